@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from procs.behaviour import ballistics
 from procs.behaviour.view import Robot
 from procs.model.ball import BALL
 from procs.model.field import Field, Point
@@ -15,6 +16,11 @@ _REACTION_S = 0.25
 _STEP_ASIDE_M_S = 0.8
 _BALL_M_S = 9.0
 _TARGETS = 13
+_LOB_INSIDE_M = 0.5  # lobs are aimed so far inside the posts
+_OVER_M = 0.06  # by which a lob passes over a robot, as the kicker's speed is not exact
+_LOB_TARGETS = 5
+_SOON_S = 0.2  # from the view until a lob passes a robot nearby
+_LOB_RAD = 0.1  # more room beside the robots before the rising ball is not needed
 LANE_RAD = 0.12
 """Room beside a pass's way that is enough."""
 _PASS_M_S = 4.3
@@ -71,6 +77,31 @@ def best_shot(start: Point, robots: Iterable[Robot], field: Field) -> Aim:
         if free_rad > best.free_rad:
             best = Aim(target, free_rad)
     return best
+
+
+def best_lob(start: Point, robots: Iterable[Robot], field: Field) -> Aim:
+    """Returns the point of the opponents' goal line for a lob, and the room beside the robots that can block it.
+
+    A robot, where it will be in a moment, blocks a lob only where the ball has not risen above it yet. Of targets with
+    enough room the one furthest from the other robots is best, as a lob that falls short is a shot.
+    """
+    near_m = ballistics.lob(math.dist(start, field.goal_centre(1.0))).clear_m(ROBOT.height_m + _OVER_M) + _BLOCK_M
+    others = list(robots)
+    near = [robot._replace(place=_soon(robot)) for robot in others if math.dist(start, robot.place) < near_m]
+    deep = [robot for robot in others if math.dist(start, robot.place) >= near_m]
+    inner_m = field.goal_width_m / 2 - _LOB_INSIDE_M
+
+    def room_rad(target: Point) -> tuple[float, float]:
+        return min(_LOB_RAD, lane_rad(start, target, near)), lane_rad(start, target, deep)
+
+    shares = (2 * index / (_LOB_TARGETS - 1) - 1 for index in range(_LOB_TARGETS))
+    best = max((Point(field.half_length_m, inner_m * share) for share in shares), key=room_rad)
+    return Aim(best, room_rad(best)[0])
+
+
+def _soon(robot: Robot) -> Point:
+    (x_m, y_m), (vx_m_s, vy_m_s) = robot.place, robot.velocity_m_s
+    return Point(x_m + _SOON_S * vx_m_s, y_m + _SOON_S * vy_m_s)
 
 
 def best_pass(

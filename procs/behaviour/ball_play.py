@@ -13,10 +13,15 @@ from procs.model.geometry import ahead, bearing_rad, wrap_rad
 
 _SHOT_RANGE_M = 10.5
 _HALFWAY_M = 0.3  # a goal from the own half would not count
-_ROOM_MAKER_M = 7.0  # so near to the goal a robot rather makes room for a shot than drives on
+_LOB_RAD = 0.05  # room beside a robot that a lob must have
+_ROOM_MAKER_M = 8.0  # so near to the goal a robot rather makes room for a shot than drives on
 _MOUTH_RAD = 0.16  # from where the goal looks narrower, a shot would hit the post
 _ROOM_M = 0.15  # beside a shot's way at the goal ...
-_ROOM_PRESSED_M = 0.05  # ... or less before the ball is lost
+_ROOM_PRESSED_M = 0.05  # ... or less before the ball is lost ...
+_FAR_M, _ROOM_FAR_M = (
+    6.0,
+    0.4,
+)  # ... and more from further away, where a lob is better than a shot that a keeper reaches
 _CROSS_M = 8.0  # a mate so near to the goal gets the ball without delay
 _CLOSE_M = 3.0  # if a rival is so near
 _BACK_M = 1.0  # a pass may lose so much ground ...
@@ -35,6 +40,7 @@ _PUSH_M_S = 1.2
 _SLOW_BALL_M_S = 2.5
 _CLEARING_RAD = (0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2)  # directions of a clearance
 _CLEARED_M = 6.0  # and the way that should be free
+_UPFIELD_1_M = 0.03  # a metre gained before the ball is out is worth so much
 _AIMED_M = 1.5  # a clearance is aimed at a point so near: roughly
 _WAYS_RAD = (0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2)
 _DETOUR_RAD = 0.3  # a radian off the way to the goal costs so much free path
@@ -73,7 +79,7 @@ class BallPlay:
         """Returns the order in free play."""
         kept = self._keep(view) if self._kick_s < _COMMITTED_S else None
         order = kept or self._choose(view)
-        kicks = order is not None and order.skill in ("shoot", "pass", "push")
+        kicks = order is not None and order.skill in ("shoot", "lob", "pass", "push")
         if kicks and not kept:
             self._kick_s = 0.0
         self._kick = order if kicks else None
@@ -91,8 +97,11 @@ class BallPlay:
     def take_penalty(self, view: View) -> Order:
         """Returns the order of a penalty's taker."""
         if self._kick is None or self._kick_s > _COMMITTED_S:
-            self._kick, self._kick_s = self._shot(view, room_m=0.0) or self._clear(view), 0.0
+            self._kick, self._kick_s = self._penalty(view), 0.0
         return self._kick
+
+    def _penalty(self, view: View) -> Order:
+        return self._kick_at_goal(view, _ROOM_M) or self._shot(view, 0.0) or self._clear(view)
 
     def best_pass(self, view: View) -> Order | None:
         """Returns the pass that the robot would play if it had to play one now."""
@@ -107,9 +116,7 @@ class BallPlay:
         carried_m = math.dist(self._held_from, view.ball.place) if self._held_from else 0.0
         stuck = self._held_s > _STUCK_S and carried_m < _STUCK_M
         impatient = stuck or self._held_s > _PATIENCE_S or carried_m > _DRIBBLE_M
-        order = self._shot(view, _ROOM_PRESSED_M if pressed or impatient else _ROOM_M)
-        if order is None:
-            order = self._try_shot(view) or self._cross(view)
+        order = self._kick_at_goal(view, _ROOM_PRESSED_M if pressed or impatient else _ROOM_M) or self._cross(view)
         alone = all(math.dist(other.place, view.own.place) > _CLOSE_M for other in view.opponents)
         if order is None and (pressed or impatient):
             order = None if alone else self._pass_on(view, _BACK_M)
@@ -128,8 +135,9 @@ class BallPlay:
         if kick.intention == "pass":
             mates = [mate for mate in view.mates if mate.name == kick.receiver]
             return self._pass(view, mates, math.inf, 0.0, kick.receiver)
-        rivals = self._before_keeper(view) if kick.intention == "try" else view.opponents
-        return kick if aim.lane_rad(view.ball.place, kick.place, rivals) > 0.0 else None
+        if kick.intention == "lob":
+            return kick if aim.best_lob(view.ball.place, view.others, self.field).free_rad > 0.0 else None
+        return kick if aim.lane_rad(view.ball.place, kick.place, view.opponents) > 0.0 else None
 
     def _dribble(self, view: View) -> Order:
         """Takes the ball along where the way is free, towards the goal if possible."""
@@ -153,7 +161,7 @@ class BallPlay:
         return Order("dribble", target, bearing_rad(target, goal), "dribble")
 
     def _make_room(self, view: View, goal_rad: float) -> Order:
-        """Takes the ball to where a shot has the most room, mostly sideways, with the mouth towards the goal."""
+        """Takes the ball to where a shot or a lob has the most room, mostly sideways, mouth towards the goal."""
         ball, others = view.ball.place, view.others
         start = self._held_from or ball
         places = [ahead(ball, goal_rad + turn_rad, _ASIDE_M) for turn_rad in _ASIDE_RAD]
@@ -161,7 +169,8 @@ class BallPlay:
 
         def room_rad(place: Point) -> float:
             kept = math.dist(place, self._room_at) < _ASIDE_M if self._room_at else False
-            return aim.best_shot(place, others, self.field).free_rad + 0.1 * kept
+            shot, lob = (best(place, others, self.field).free_rad for best in (aim.best_shot, aim.best_lob))
+            return max(shot, lob) + 0.1 * kept
 
         self._room_at = max(possible, key=room_rad, default=ball)
         target = aim.best_shot(self._room_at, others, self.field).place
@@ -171,6 +180,10 @@ class BallPlay:
         field = self.field
         return field.in_field(*place, -0.5) and place.x_m < field.half_length_m - _BEFORE_GOAL_M
 
+    def _kick_at_goal(self, view: View, room_m: float) -> Order | None:
+        far = math.dist(view.ball.place, self.field.goal_centre(1.0)) > _FAR_M
+        return self._shot(view, _ROOM_FAR_M if far else room_m) or self._lob(view) or self._shot(view, room_m)
+
     def _shot(self, view: View, room_m: float) -> Order | None:
         start = view.ball.place
         if not self._in_range(start):
@@ -179,6 +192,16 @@ class BallPlay:
         if best.free_rad * math.dist(start, best.place) < room_m:
             return None
         return Order("shoot", best.place, bearing_rad(start, best.place), "shoot")
+
+    def _lob(self, view: View) -> Order | None:
+        """Kicks over the robots and under the bar."""
+        start = view.ball.place
+        if not self._in_range(start):
+            return None
+        best = aim.best_lob(start, view.others, self.field)
+        if best.free_rad < _LOB_RAD:
+            return None
+        return Order("lob", best.place, bearing_rad(start, best.place), "lob")
 
     def _in_range(self, start: Point) -> bool:
         near = start.x_m > _HALFWAY_M and math.dist(start, self.field.goal_centre(1.0)) < _SHOT_RANGE_M
@@ -201,32 +224,22 @@ class BallPlay:
         ]
         return self._pass(view, mates, math.inf, aim.LANE_RAD, "")
 
-    def _try_shot(self, view: View) -> Order | None:
-        """Shoots past the field players to the corner that the goalkeeper covers least; a save leaves a rebound."""
-        start = view.ball.place
-        if not self._in_range(start):
-            return None
-        best = aim.best_shot(start, view.others, self.field)
-        if aim.lane_rad(start, best.place, (*self._before_keeper(view), *view.mates)) < 0.0:
-            return None
-        return Order("shoot", best.place, bearing_rad(start, best.place), "try")
-
-    def _before_keeper(self, view: View) -> list[Robot]:
-        """Returns the opponents without the one nearest to its goal."""
-        goal = self.field.goal_centre(1.0)
-        keeper = min(view.opponents, key=lambda other: math.dist(other.place, goal), default=None)
-        return [other for other in view.opponents if other is not keeper]
-
     def _clear(self, view: View) -> Order:
         """Kicks the ball away hard: upfield, where the way is free and the robot need not turn far."""
         ball, own_rad = view.ball.place, view.own.heading_rad
 
         def worth(way_rad: float) -> float:
             free_rad = aim.lane_rad(ball, ahead(ball, way_rad, _CLEARED_M), view.others)
-            return min(0.3, free_rad) - aim.TURN_1_RAD * abs(wrap_rad(way_rad - own_rad))
+            turn_rad = abs(wrap_rad(way_rad - own_rad))
+            return min(0.3, free_rad) - aim.TURN_1_RAD * turn_rad + _UPFIELD_1_M * self._upfield_m(ball, way_rad)
 
         way_rad = max(_CLEARING_RAD, key=worth)
         return Order("shoot", ahead(ball, way_rad, _AIMED_M), way_rad, "clear")
+
+    def _upfield_m(self, ball: Point, way_rad: float) -> float:
+        """Returns how much ground a clearance gains before it leaves the field over a touch line, at most 10 m."""
+        beside_m = self.field.half_width_m - math.copysign(1.0, math.sin(way_rad)) * ball.y_m
+        return min(10.0, max(0.0, beside_m) / max(1e-3, abs(math.tan(way_rad))))
 
     def _push(self, view: View) -> Order:
         """Sets the ball free, so that the robot can take it again: a slow pass ahead, where the way is free."""

@@ -1,4 +1,4 @@
-"""Range of a rolling ball, speed of a kick, and meeting points of ball and robot."""
+"""Range of a rolling ball, speed of a kick, flight of a lob, and meeting points of ball and robot."""
 
 import math
 from typing import NamedTuple
@@ -16,6 +16,13 @@ _ACCELERATION_M_S2 = 2.5
 _CARRY_S = 0.25
 """A robot that drives reaches what a robot at rest reaches from the place where it will be after this time."""
 _STANDING = Point(0.0, 0.0)
+_GRAVITY_M_S2 = 9.81
+_LOB_M_S, _KICK_M_S = 11.2, 11.9
+"""Highest speed of a lob over the ground, and of any kick: the faster, the less its error changes the height."""
+_RISE_S = math.sqrt(2 * (ROBOT.height_m + 0.09) / _GRAVITY_M_S2)
+"""Until a ball is at the top of a flight that passes over robots and under the bar."""
+_KEEPER_M = 0.45
+"""A keeper's middle is so far before the goal line."""
 
 
 class Meeting(NamedTuple):
@@ -23,6 +30,43 @@ class Meeting(NamedTuple):
 
     place: Point
     time_s: float
+
+
+class Lob(NamedTuple):
+    """Kick into the air, without the resistance of the air."""
+
+    speed_m_s: float
+    """Over the ground."""
+    lift_m_s: float
+    """Upwards."""
+
+    def clear_m(self, height_m: float) -> float:
+        """Returns how far from the kick the ball's lowest point gets above a height; infinite if it never does."""
+        squared = self.lift_m_s**2 - 2 * _GRAVITY_M_S2 * height_m
+        if squared < 0.0:
+            return math.inf
+        return self.speed_m_s * (self.lift_m_s - math.sqrt(squared)) / _GRAVITY_M_S2
+
+
+def lob(distance_m: float, carried_m_s: float = 0.0) -> Lob:
+    """Returns the lob that is as high as a goalkeeper's top and a little more when it gets to the goal.
+
+    The robot that kicks drives towards the goal at `carried_m_s`, which makes the lob faster than the kick.
+    From near the goal the ball is at the top of its flight above the goalkeeper, from further away on its way down.
+    """
+    distance_m = max(2 * _KEEPER_M, distance_m)
+    slow_m_s = (distance_m - _KEEPER_M) / _RISE_S
+    speed_m_s = min(_LOB_M_S + carried_m_s, slow_m_s)
+    lift_m_s = _lift_m_s(distance_m / speed_m_s)
+    kick_m_s = math.sqrt(_KICK_M_S**2 - min(_KICK_M_S / 2, lift_m_s) ** 2)
+    speed_m_s = min(speed_m_s, kick_m_s + carried_m_s)
+    return Lob(speed_m_s, _lift_m_s(distance_m / speed_m_s))
+
+
+def _lift_m_s(time_s: float) -> float:
+    """Returns the speed upwards at which the ball has the height of a lob at the goal after a time."""
+    top_m = _GRAVITY_M_S2 * _RISE_S**2 / 2
+    return top_m / time_s + _GRAVITY_M_S2 * time_s / 2
 
 
 def ball_after(ball: Ball, time_s: float) -> Point:

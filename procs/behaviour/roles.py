@@ -23,6 +23,7 @@ _ROLLS_M_S = 0.6  # the nearest robot takes a slower ball, whatever was agreed
 _STAY_S = 0.6  # an attacker keeps its role unless another is so much faster at the ball
 _MIDDLE_M = 1.5  # a ball no further from the middle leaves the supporter on its flank
 _STAY_M = 1.0  # a robot keeps its place in the formation unless a change saves this much distance
+_AGREED_M = 20.0  # the same for a robot that has accepted a pass
 
 
 class Job(NamedTuple):
@@ -106,5 +107,6 @@ def _way_m(team: Sequence[Robot], posts: Sequence[Job], order: Sequence[int]) ->
     way_m = 0.0
     for robot, index in zip(team, order, strict=False):
         post = posts[index]
-        way_m += math.dist(robot.place, post.place) - _STAY_M * (robot.role == post.role)
+        stay_m = _AGREED_M if robot.agreement.passer else _STAY_M
+        way_m += math.dist(robot.place, post.place) - stay_m * (robot.role == post.role)
     return way_m

@@ -61,7 +61,7 @@ class Skiller(Component):
         self._drive(step.drive)
         self._handle(step.dribble)
         if step.kick_m_s > 0:
-            self.kick.value.speed_m_s = step.kick_m_s
+            self.kick.value.speed_m_s, self.kick.value.elevation_rad = step.kick_m_s, step.elevation_rad
             self._kick = self.kick.call(timeout_s=_KICK_TIMEOUT_S, expires_s=0.0)  # aimed for this tick alone
 
     def finalize(self) -> None:

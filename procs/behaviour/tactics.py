@@ -46,6 +46,7 @@ class Tactics:
         self._laid: Point | None = None  # place of the ball of the set piece at hand
         self._taking = False  # the ball in the mouth is that of the own set piece
         self._penalty = False  # that set piece is a penalty
+        self._moved = False  # another robot has moved the ball of the set piece at hand
         self._receiver = ""  # of the own set piece
         self._planned: tuple[str, Point] | None = None
         self._planned_for = -1
@@ -67,7 +68,7 @@ class Tactics:
         holds_ball = self._held_s >= _SETTLED_S
         self._play.watch(view, holds_ball, duration_s)
         if game.stopped:
-            self._laid = view.ball.place if view.ball.known else None
+            self._laid, self._moved = view.ball.place if view.ball.known else None, False
         game = self._as_laid(game)
         self._barred_s = self._still_barred_s(view, game, holds_ball) - duration_s
         passed = self._last.intention == "pass" and not holds_ball and view.ball.speed_m_s > _PASSED_M_S
@@ -80,7 +81,7 @@ class Tactics:
         before, self._last = self._last, self._order(view, game, job, holds_ball)
         stops = game.stopped and not self._taking
         lost = not holds_ball and before.skill in _WITH_BALL
-        if stops or lost or self._last.skill in ("shoot", "push"):
+        if stops or lost or self._last.skill in ("shoot", "lob", "push"):
             self.passing.announce("")
         return self._last
 
@@ -95,16 +96,18 @@ class Tactics:
         """Returns for how long the robot leaves the ball alone after a set piece that it has taken."""
         if game.stopped or not view.mates or holds_ball:
             return 0.0
-        if self._taking and self._last.skill in ("pass", "shoot"):
+        if self._taking and self._last.skill in ("pass", "shoot", "lob"):
             return _BARRED_S  # it held the ball in the last tick and does not any more
-        if self._taking and not game.free_play and self._fumbled(view):
+        if not game.free_play and self._fumbled(view) and self._taking:
             return _BARRED_S
         return 0.0 if view.ball.is_near(view.others, _TOUCHED_M) else self._barred_s
 
     def _fumbled(self, view: View) -> bool:
-        """Returns whether the robot has bumped the ball of the set piece away."""
+        """Returns whether the robot has bumped the ball of the set piece away; another may have done so before."""
         laid, ball = self._laid, view.ball.place
-        return laid is not None and math.dist(ball, laid) > _FUMBLED_M and math.dist(view.own.place, ball) < _NEAR_M
+        gone, near = laid is not None and math.dist(ball, laid) > _FUMBLED_M, math.dist(view.own.place, ball) < _NEAR_M
+        self._moved = self._moved or (gone and not near)
+        return gone and near and not self._moved
 
     def _order(self, view: View, game: Game, job: Job, holds_ball: bool) -> Order:
         if game.paused or not view.localized:
@@ -175,11 +178,13 @@ class Tactics:
     def _helper_place(self, view: View, game: Game, job: Job) -> Point:
         """Returns the place of a robot that does not take the set piece; the receiver's is told by the taker."""
         place = formation.helper_place(job.place, game, self.field)
-        if game.whose is not Whose.OURS or job.role != SUPPORTER:
+        if game.whose is not Whose.OURS:
             return place
         told = [mate.agreement.place for mate in view.mates if mate.name == self.passing.said.passer]
         if told:
             return formation.helper_place(told[0], game, self.field)
+        if job.role != SUPPORTER:
+            return place
         planned = set_pieces.choose(game, (), self.field)
         return planned[1] if planned else place
 

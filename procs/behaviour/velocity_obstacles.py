@@ -25,8 +25,10 @@ _LATE_S = 0.4
 _SOONEST_S = 0.15
 _TOUCH_M_S = 0.4
 """Closing speed of a touch that does no harm."""
-_WEIGHT_S = 1.6
+_WEIGHT_S = 3.0
 """Cost of a collision of 1 m/s in 1 s, as a difference from the wanted velocity in m/s."""
+_GROWTH_M_S = 0.2
+"""Further room for each second until robots meet: velocities are known roughly, and robots change them."""
 _LEAST_M_S = 1.0
 _FASTEST_M_S = 4.0
 _SPEED_SHARES = (1.0, 0.6, 0.25)
@@ -89,7 +91,8 @@ class _Others:
         self._closing = self._now - velocity
         self._gap_x = to[:, 0] - self._closing[:, 0] * _TIMES_S[:, None]
         self._gap_y = to[:, 1] - self._closing[:, 1] * _TIMES_S[:, None]
-        self._apart_m2 = apart**2
+        grown = np.minimum(apart + _GROWTH_M_S * _TIMES_S[:, None], np.maximum(apart, away - 0.02))
+        self._apart_m2 = grown**2
         self._touching = away <= apart
         self._touches = bool(self._touching.any())
 

@@ -3,7 +3,7 @@
 from procs.behaviour.skills.getting import GetBall, Intercept
 from procs.behaviour.skills.keeping import KeepGoal, KeepLine
 from procs.behaviour.skills.moving import Goto, Mark, Stop
-from procs.behaviour.skills.playing import Aim, Dribble, Pass, Push, Shoot
+from procs.behaviour.skills.playing import Aim, Dribble, Lob, Pass, Push, Shoot
 from procs.behaviour.skills.skill import Scene, Status, Step
 from procs.behaviour.skills.states import StateMachine
 
@@ -14,6 +14,7 @@ SKILLS: dict[str, type[StateMachine]] = {
     "dribble": Dribble,
     "aim": Aim,
     "shoot": Shoot,
+    "lob": Lob,
     "pass": Pass,
     "push": Push,
     "intercept": Intercept,

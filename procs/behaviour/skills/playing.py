@@ -1,4 +1,4 @@
-"""Skills with the ball in the mouth: dribble, shoot, pass."""
+"""Skills with the ball in the mouth: dribble, shoot, lob, pass."""
 
 import math
 from abc import abstractmethod
@@ -127,6 +127,10 @@ class _Kick(_WithBall):
     def _speed_m_s(self, scene: Scene, distance_m: float) -> float:
         """Returns the speed over the ground at which the ball leaves for a place that far away."""
 
+    def _lift_m_s(self, _scene: Scene, _distance_m: float) -> float:
+        """Returns the speed upwards at which the ball leaves for a place that far away."""
+        return 0.0
+
     @abstractmethod
     def _tolerance_rad(self, distance_m: float) -> float:
         """Returns the largest error of the heading at that distance."""
@@ -187,7 +191,9 @@ class _Kick(_WithBall):
 
     def _kick(self, scene: Scene) -> Step:
         self._asked_for = True
-        return self._turn(scene)._replace(kick_m_s=self._kick_m_s)
+        lift_m_s = self._lift_m_s(scene, math.dist(scene.view.own.place, scene.place))
+        elevation_rad = math.atan2(lift_m_s, self._kick_m_s)
+        return self._turn(scene)._replace(kick_m_s=self._kick_m_s, elevation_rad=elevation_rad)
 
     def _hold(self, _scene: Scene) -> Step:
         return Step(dribble=True)
@@ -220,6 +226,16 @@ class Shoot(_Kick):
         return clamp(0.15 / max(distance_m, 0.1), 0.02, 0.1)
 
 
+class Lob(Shoot):
+    """Kicks over robots at a place on the goal line, under the bar."""
+
+    def _speed_m_s(self, scene: Scene, distance_m: float) -> float:
+        return _lob(scene, distance_m).speed_m_s
+
+    def _lift_m_s(self, scene: Scene, distance_m: float) -> float:
+        return _lob(scene, distance_m).lift_m_s
+
+
 class Pass(_Kick):
     """Kicks so that the ball arrives at the place at a speed that a robot can take."""
 
@@ -233,6 +249,12 @@ class Pass(_Kick):
 
 class Push(Pass):
     """Sets the ball free, slowly, for the robot that kicks it."""
+
+
+def _lob(scene: Scene, distance_m: float) -> ballistics.Lob:
+    own, way_rad = scene.view.own, bearing_rad(scene.view.own.place, scene.place)
+    carried_m_s = own.velocity_m_s.x_m * math.cos(way_rad) + own.velocity_m_s.y_m * math.sin(way_rad)
+    return ballistics.lob(distance_m - _MOUTH_M, max(0.0, carried_m_s))
 
 
 def _mouth_velocity_m_s(own: Robot, turn_rad_s: float) -> Point:

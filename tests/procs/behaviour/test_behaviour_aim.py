@@ -28,6 +28,13 @@ def test_robot_behind_ball_or_beyond_target_does_not_count() -> None:
     assert free_rad > 3.0
 
 
+def test_lob_is_blocked_by_a_robot_that_will_be_before_the_ball() -> None:
+    rival = robot("", 7.2, 0.8)
+    assert aim.best_lob(BALL, [rival], FIELD).free_rad > 0.05
+    assert aim.best_lob(BALL, [rival._replace(velocity_m_s=Point(0.0, -4.0))], FIELD).free_rad < 0.0
+    assert aim.best_lob(BALL, [robot("", 10.0, 0.0)], FIELD).free_rad > 0.05, "the ball passes over it"
+
+
 def test_robot_far_down_the_line_counts_as_wider() -> None:
     slow = aim.lane_rad(Point(0.0, 0.0), Point(9.0, 0.0), [robot("", 8.0, 1.0)], ball_m_s=4.0)
     fast = aim.lane_rad(Point(0.0, 0.0), Point(9.0, 0.0), [robot("", 8.0, 1.0)], ball_m_s=12.0)

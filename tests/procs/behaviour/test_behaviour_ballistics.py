@@ -2,6 +2,7 @@
 
 import math
 
+import pymunk
 import pytest
 
 from procs.behaviour import ballistics
@@ -9,7 +10,9 @@ from procs.behaviour.view import Ball
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Point
 from procs.model.robot import ROBOT
+from procs.simulation.physics.ball_body import Ball as Flight
 from procs.simulation.physics.rolling import RollingFriction
+from tests.procs.behaviour.behaviour_parts import FIELD
 
 
 @pytest.mark.parametrize("distance_m", [3.0, 6.0, 9.0])
@@ -20,6 +23,21 @@ def test_kicked_ball_arrives_with_the_wanted_speed(distance_m: float) -> None:
         speed_m_s, _ = friction.advance(speed_m_s, 0.0, step_s)
         way_m += speed_m_s * step_s
     assert speed_m_s == pytest.approx(2.0, abs=0.05)
+
+
+@pytest.mark.parametrize("distance_m", [2.0, 4.0, 6.0, 8.0])
+def test_lob_comes_to_the_goal_between_keeper_and_bar(distance_m: float) -> None:
+    ball = Flight(pymunk.Space(), BallModel())
+    lob = ballistics.lob(distance_m)
+    ball.vz_m_s, x_m, clear_m = lob.lift_m_s, 0.0, math.nan
+    while x_m < distance_m:
+        ball.fall(0.001)
+        x_m += lob.speed_m_s * 0.001
+        if math.isnan(clear_m) and ball.z_m > ROBOT.height_m:
+            clear_m = x_m
+    assert ROBOT.height_m + 0.05 < ball.z_m < FIELD.goal_height_m - 2 * BALL.radius_m - 0.05
+    assert lob.clear_m(ROBOT.height_m) == pytest.approx(clear_m, abs=0.05)
+    assert lob.clear_m(3.0) == math.inf
 
 
 def test_rolling_ball_is_predicted() -> None:

@@ -11,7 +11,7 @@ from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER, ass
 from procs.behaviour.view import View
 from procs.model.field import Point
 from procs.referee.restarts import State
-from tests.procs.behaviour.behaviour_parts import FIELD, ball, robot, view
+from tests.procs.behaviour.behaviour_parts import FIELD, agreed, ball, robot, view
 
 TEAM = (
     robot("cyan1", -10.5, 0.0),
@@ -79,6 +79,16 @@ def test_supporter_changes_its_flank_only_for_a_clear_ball() -> None:
     for y_m, flank in ((0.5, 1.0), (2.5, -1.0)):
         jobs = assign(view(supporter, ball(0.0, y_m), (TEAM[0], TEAM[1])), FIELD)
         assert jobs["cyan5"].place.y_m * flank > 0
+
+
+def test_robot_that_awaits_an_agreed_pass_keeps_its_role() -> None:
+    taker, rival = robot("cyan2", -0.8, 0.0, role=ATTACKER), robot("cyan3", 3.0, -3.5, role=DEFENDER)
+    waiting = robot("cyan4", -2.0, 3.0, role=SUPPORTER)
+    agree = agreed(waiting)
+    roles = [
+        assign(view(taker, ball(0.0, 0.0), (TEAM[0], rival, mate)), FIELD)["cyan4"].role for mate in (waiting, agree)
+    ]
+    assert roles == [DEFENDER, SUPPORTER]
 
 
 def test_robot_without_a_pose_has_no_job_but_its_mates_have() -> None:

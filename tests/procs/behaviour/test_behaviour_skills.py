@@ -9,7 +9,7 @@ from procs.behaviour.skills.book import Machine
 from procs.behaviour.skills.getting import GetBall, Intercept
 from procs.behaviour.skills.keeping import KeepGoal, KeepLine
 from procs.behaviour.skills.moving import Goto, Mark
-from procs.behaviour.skills.playing import Aim, Dribble, Pass, Shoot
+from procs.behaviour.skills.playing import Aim, Dribble, Lob, Pass, Shoot
 from procs.behaviour.skills.skill import Drive, Scene, Status, Step
 from procs.behaviour.view import Ball, View
 from procs.model.ball import BALL
@@ -141,6 +141,24 @@ def test_shoot_turns_first_and_kicks_when_aimed() -> None:
     assert steps[-1].kick_m_s > 8.0
     assert skill.step(aimed).status is Status.RUNNING
     assert skill.step(aimed._replace(kicked=True, holds_ball=False)).status is Status.FINAL
+
+
+def test_lob_lifts_the_ball_over_robots_and_under_the_bar() -> None:
+    held = scene(view(OWN, ball(0.33, 0.0)), 6.0, holds_ball=True)
+    lob = Lob().step(held)
+    time_s = (6.0 - 0.33) / lob.kick_m_s
+    height_m = lob.kick_m_s * math.tan(lob.elevation_rad) * time_s - 9.81 * time_s**2 / 2
+    assert ROBOT.height_m < height_m < 1.0 - 2 * BALL.radius_m
+    driving = held._replace(view=view(OWN._replace(velocity_m_s=Point(1.0, 0.0)), ball(0.33, 0.0)))
+    moved = Lob().step(driving)
+    assert moved.kick_m_s == pytest.approx(lob.kick_m_s, abs=0.1), (
+        "the robot's own speed makes the lob faster and flatter"
+    )
+    lifts = [step.kick_m_s * math.tan(step.elevation_rad) for step in (lob, moved)]
+    assert lifts[0] > lifts[1] + 0.05
+    far = Lob().step(scene(view(OWN, ball(0.33, 0.0)), 10.5, holds_ball=True))
+    assert far.kick_m_s / math.cos(far.elevation_rad) < 12.0, "more than the kicker can"
+    assert Shoot().step(held).elevation_rad == 0.0
 
 
 def test_kick_waits_while_the_aim_still_improves() -> None:

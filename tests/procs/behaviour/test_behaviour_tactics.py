@@ -100,14 +100,31 @@ def test_shot_once_begun_keeps_its_target() -> None:
     assert tactics.decide(moved, PLAY, job(ATTACKER), True, 0.05).place == first.place
 
 
-def test_shot_past_a_keeper_is_given_up_when_a_rival_steps_in() -> None:
-    tactics, free = Tactics(FIELD), with_ball(1.0, 0.0)
-    orders = [tactics.decide(free, PLAY, job(ATTACKER), True, 0.05) for _ in range(6)]
-    tried = orders[-1]
-    assert (tried.skill, tried.intention) == ("shoot", "try")
-    blocked = with_ball(1.0, 0.0, robot("", 3.0, tried.place.y_m / 5))
+WALL = tuple(robot("", 8.3, y_m) for y_m in (-1.2, -0.6, 0.0, 0.6, 1.2))
+
+
+def test_ball_is_lobbed_over_a_wall_before_the_goal() -> None:
+    order = decide(with_ball(4.6, 0.0, *WALL), holds_ball=True, ticks=4)
+    assert (order.skill, order.place.x_m) == ("lob", 11.0)
+    assert abs(order.place.y_m) < 0.8
+    assert decide(with_ball(1.5, 0.0, *WALL), holds_ball=True, ticks=4).skill == "lob"
+    assert decide(with_ball(0.2, 0.0, *WALL), holds_ball=True, ticks=4).skill != "lob", "too far away"
+
+
+def test_rival_just_before_the_ball_blocks_a_lob() -> None:
+    tactics, free = Tactics(FIELD), with_ball(4.6, 0.0, *WALL)
+    orders = [tactics.decide(free, PLAY, job(ATTACKER), True, 0.05) for _ in range(4)]
+    assert orders[-1].skill == "lob"
+    blocked = with_ball(4.6, 0.0, *WALL, robot("", 5.6, orders[-1].place.y_m / 6))
     order = tactics.decide(blocked, PLAY, job(ATTACKER), True, 0.05)
-    assert (order.skill, order.place) != (tried.skill, tried.place)
+    assert (order.skill, order.place) != ("lob", orders[-1].place)
+
+
+def test_penalty_is_lobbed_over_a_keeper_in_the_middle() -> None:
+    spot, penalty = Point(7.4, 0.0), Game(State.PENALTY, stopped=False, whose=Whose.OURS, spot=Point(7.4, 0.0))
+    keeper = robot("", 10.5, 0.0), robot("", 10.5, 0.6), robot("", 10.5, -0.6)
+    seen = view(robot("cyan2", 7.07, 0.0), ball(*spot), (), keeper)
+    assert decide(seen, penalty, holds_ball=True, ticks=6).skill == "lob"
 
 
 def test_while_stopped_the_taker_waits_behind_the_ball() -> None:
@@ -281,3 +298,25 @@ def test_taker_that_bumped_the_ball_away_leaves_it_to_a_mate() -> None:
     for game, where in ((waiting, ball(2.0, 0.0)), (waiting._replace(stopped=False), ball(2.5, 0.0))):
         tactics.decide(seen._replace(ball=where), game, job(ATTACKER), False, 0.05)
     assert tactics.barred
+
+
+def test_ball_that_a_mate_bumped_away_is_taken_by_the_next_robot() -> None:
+    tactics, mates = Tactics(FIELD), (robot("cyan3", 0.0, 3.0, role=SUPPORTER),)
+    waiting = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(2.0, 0.0))
+    game = waiting._replace(stopped=False)
+    for seen_game, own_x_m, ball_x_m in ((waiting, -1.0, 2.0), (game, -1.0, 2.5), (game, 1.8, 2.5)):
+        seen = view(robot("cyan2", own_x_m, 0.0), ball(ball_x_m, 0.0), mates)
+        tactics.decide(seen, seen_game, job(ATTACKER), False, 0.05)
+    assert not tactics.barred
+
+
+def test_clearance_beside_the_touch_line_goes_upfield() -> None:
+    order = decide(with_ball(-7.0, 6.0, robot("", -6.1, 6.0)), holds_ball=True, ticks=4)
+    assert order.intention == "clear"
+    assert order.heading_rad < -0.3
+
+
+def test_keeper_that_has_time_is_lobbed_and_an_empty_goal_is_not() -> None:
+    beside = with_ball(4.0, 2.0)
+    assert decide(beside, holds_ball=True, ticks=4).skill == "lob"
+    assert decide(beside._replace(opponents=()), holds_ball=True, ticks=4).skill == "shoot"

@@ -90,6 +90,19 @@ def test_room_beside_a_robot_grows_with_its_uncertainty() -> None:
     assert passed_m(0.25) > passed_m(0.1) + 0.03
 
 
+def test_room_grows_with_the_time_until_robots_meet() -> None:
+    wanted, now = Point(2.0, 0.0), Point(2.0, 0.0)
+    far, near = (Mover(Point(x_m, 0.7), REST, gives_way=False, margin_m=0.1) for x_m in (2.2, 0.3))
+    assert safe_velocity(wanted, now, REST, [far], APART_M, 3.0) != wanted, "by then it may have come closer"
+    assert safe_velocity(wanted, now, REST, [near], APART_M, 3.0) == wanted
+
+
+def test_robot_slows_down_rather_than_run_into_a_row() -> None:
+    row = [Mover(Point(2.2, 0.8 * step), REST, gives_way=False, margin_m=0.1) for step in range(-3, 4)]
+    chosen = safe_velocity(Point(2.5, 0.0), Point(2.5, 0.0), REST, row, APART_M, 3.0)
+    assert math.hypot(*chosen) < 1.0
+
+
 def test_robot_beside_another_may_leave() -> None:
     near = Mover(Point(0.5, 0.0), REST, gives_way=False)
     assert safe_velocity(Point(-2.0, 0.0), REST, REST, [near], APART_M, 3.0) == (-2.0, 0.0)
