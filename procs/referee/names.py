@@ -1,6 +1,6 @@
 """Names of the robots: within the referee a robot is called by team and number, whatever its namespace."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from procs.model.robot import CYAN, MAGENTA, Player, number_of, team_of
 
@@ -12,6 +12,10 @@ class Names:
         """Robots that are not among the players are known by their namespaces, if those are a team and a number."""
         self._inside = {name: f"{player.team}{player.number}" for name, player in players.items()}
         self._outside = {inside: name for name, inside in self._inside.items()}
+
+    def meet(self, robots: Iterable[str]) -> None:
+        """Takes the namespaces on the field: of players that share team and number, the one that is there counts."""
+        self._outside |= {self._inside[robot]: robot for robot in robots if robot in self._inside}
 
     def inside(self, robot: str) -> str:
         """Returns the referee's name of a robot; empty for one that plays in neither team."""

@@ -71,6 +71,7 @@ class Referee(Component):
 
     def _sight(self) -> Sight:
         ball, inside = self.match_events.value, self._names.inside
+        self._names.meet(robot.name for robot in self.ground_truth.value.robots)
         robots = {inside(robot.name): robot for robot in self.ground_truth.value.robots}
         robots.pop("", None)  # what plays in neither team
         reported = [event for report in self.match_events.fresh for event in report.events if event.kind in _KINDS]

@@ -91,7 +91,7 @@ class Simulator(Component):
         """Sets the world up.
 
         Raises:
-            ValueError: `starts` or `stuck_wheels` names a robot that does not exist.
+            ValueError: `starts` or `stuck_wheels` names a robot that does not exist, or two robots have one number.
         """
         config, noise = self.config, noise_of(self.config.realism, self.config.errors)
         robots = sorted(self.wheel_command)
@@ -99,6 +99,11 @@ class Simulator(Component):
             for stranger in sorted(set(named) - set(robots)):
                 known = ", ".join(robots) or "none"
                 raise ValueError(f"{self.name}: {setting}: no robot '{stranger}'; there are: {known}")
+        backs: dict[tuple[str, int], str] = {}
+        for robot, player in ((robot, config.players[robot]) for robot in robots if robot in config.players):
+            other = backs.setdefault((player.team, player.number), robot)
+            if other != robot:
+                raise ValueError(f"{self.name}: players: {other} and {robot} are both {player.team} {player.number}")
         starts = {robot: Pose(*pose) for robot, pose in config.starts.items()}
         self._world = World(
             robots,

@@ -278,7 +278,7 @@ def carried_piece(ticks: int = 220) -> Piece:
     return made
 
 
-def test_carried_robot_has_found_its_place_once_its_pose_is_right() -> None:
+def test_carried_robot_is_found_once_its_pose_is_right() -> None:
     made = carried_piece()
     at = [(0.0, True)] * 20 + [(0.0, False)] * 10 + [(5.1, True)] * 190
     made.by_robot["pose"] = {"cyan1": {FIRST + i: believes(*each) for i, each in enumerate(at)}}

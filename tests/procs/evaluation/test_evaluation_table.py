@@ -71,7 +71,7 @@ def test_single_piece_has_no_interval() -> None:
     assert json.loads(as_json(rows))[0]["low"] is None
 
 
-def test_interval_of_an_event_that_was_never_seen_ends_above_zero() -> None:
+def test_interval_of_an_event_never_seen_ends_above_zero() -> None:
     events = Measure("event", rate, "/min", "0")
     (row,) = rows_of([{"event": np.array([(0.0, 5.0)])}, {"event": np.array([(0.0, 10.0)])}], [events])
     assert (row.value, row.low) == (0.0, 0.0)

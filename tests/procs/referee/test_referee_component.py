@@ -195,6 +195,18 @@ def test_teams_and_numbers_are_those_of_the_players() -> None:
     assert (now.history[-1].robot, now.history[-1].team) == ("cyan2", game_state_t.TEAM_MAGENTA)
 
 
+def test_player_on_the_field_has_the_number() -> None:
+    both = {"cyan3": {"team": "cyan", "number": 3}, "anna": {"team": "cyan", "number": 3}}
+    for name in both:
+        bench, robot = Bench(Referee, "world/referee", players=both), true_robot_t()
+        robot.name = name
+        bench.port("ground_truth").put(robots=[robot])
+        bench.port("referee_command").put(name="red_card", robot=name)
+        bench.iterate()
+        bench.iterate()
+        assert state(bench).sent_off == [name]
+
+
 def test_robot_is_named_by_its_namespace_in_answers() -> None:
     bench = with_names()
     bench.port("referee_command").put(name="repair", robot="cyan1")

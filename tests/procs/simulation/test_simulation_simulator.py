@@ -103,6 +103,12 @@ def test_fault_of_a_robot_that_is_not_there_is_named() -> None:
         bench(stuck_wheels={"cyan1": [4]})
 
 
+def test_two_robots_with_one_number_are_refused() -> None:
+    players = {name: {"team": "cyan", "number": number} for name, number in (("cyan1", 2), ("cyan2", 2), ("anna", 2))}
+    with pytest.raises(ValueError, match="players: cyan1 and cyan2 are both cyan 2"):
+        bench(players=players)
+
+
 def test_settings_of_the_finished_world_are_fixed() -> None:
     live = {name for name, field in SimulatorConfig.model_fields.items() if not field.frozen}
     assert live - {"log_level"} == {"command_timeout_s", "stuck_wheels"}
