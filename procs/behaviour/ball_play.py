@@ -17,11 +17,8 @@ _LOB_RAD = 0.05  # room beside a robot that a lob must have
 _ROOM_MAKER_M = 8.0  # so near to the goal a robot rather makes room for a shot than drives on
 _MOUTH_RAD = 0.16  # from where the goal looks narrower, a shot would hit the post
 _ROOM_M = 0.15  # beside a shot's way at the goal ...
-_ROOM_PRESSED_M = 0.05  # ... or less before the ball is lost ...
-_FAR_M, _ROOM_FAR_M = (
-    6.0,
-    0.4,
-)  # ... and more from further away, where a lob is better than a shot that a keeper reaches
+_ROOM_PRESSED_M = 0.05  # ... or less before the ball is lost
+_FAR_M, _ROOM_FAR_M = 6.0, 0.4  # a keeper reaches shots from further away that have less room; a lob is better
 _CROSS_M = 8.0  # a mate so near to the goal gets the ball without delay
 _CLOSE_M = 3.0  # if a rival is so near
 _BACK_M = 1.0  # a pass may lose so much ground ...

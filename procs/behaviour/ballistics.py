@@ -51,8 +51,9 @@ class Lob(NamedTuple):
 def lob(distance_m: float, carried_m_s: float = 0.0) -> Lob:
     """Returns the lob that is as high as a goalkeeper's top and a little more when it gets to the goal.
 
-    The robot that kicks drives towards the goal at `carried_m_s`, which makes the lob faster than the kick.
-    From near the goal the ball is at the top of its flight above the goalkeeper, from further away on its way down.
+    Its flight of `distance_m` is a parabola. The robot that kicks drives towards the goal at `carried_m_s`, which makes
+    the lob faster than the kick; both are at most what the kicker can. From near the goal the ball is at the top of its
+    flight above the goalkeeper, from further away on its way down.
     """
     distance_m = max(2 * _KEEPER_M, distance_m)
     slow_m_s = (distance_m - _KEEPER_M) / _RISE_S

@@ -84,7 +84,7 @@ class Navigator(Component):
         pose = self._pose(model)
         place = obstacles.reachable(Point(target.x_m, target.y_m), config.field)
         around = obstacles.discs(model, config.field, target.avoid_robots, target.avoid_ball)
-        way = find_way(pose.place, place, around, self._direction_rad)
+        way = find_way(pose.place, place, around, self._direction_rad, self._inside)
         self._direction_rad = way.direction_rad
         turn_rad = wrap_rad(target.heading_rad - pose.heading_rad)
         state.distance_m = math.dist(pose.place, place)
@@ -95,6 +95,9 @@ class Navigator(Component):
         if target.avoid_robots:
             wanted = self._give_way(wanted, pose.place, model)
         self._command(wanted, pose.heading_rad)
+
+    def _inside(self, place: Point) -> bool:
+        return obstacles.inside_walls(place, self.config.field)
 
     def _give_way(self, wanted: Velocity, place: Point, model: world_model_t) -> Velocity:
         movers = obstacles.movers(model, self.config.limits.latency_s, self._number)

@@ -22,6 +22,7 @@ _MEETING_M_S = 3.0  # two robots that drive towards each other get closer about 
 _NEAR_M = 6.0  # further obstacles do not matter yet
 _PASSING_M = 0.1  # room beside a robot that is passed ...
 _UNSURE_M = 0.15  # ... and at most so much more for the deviation of its place
+_AT_WALL_M = 0.05  # a robot at the wall may be believed so far inside it
 _DRIVES_M_S = 0.3  # a slower mate plays the ball or stays at its place, and does not give way
 
 
@@ -46,6 +47,12 @@ def reachable(place: Point, field: Field) -> Point:
     if abs(y_m) < field.goal_width_m / 2 + 0.5:
         x_m = clamp(x_m, -field.half_length_m + 0.1, field.half_length_m - 0.1)
     return Point(x_m, y_m)
+
+
+def inside_walls(place: Point, field: Field) -> bool:
+    """Returns whether a robot's middle can be at the place, as the wall around the field allows."""
+    x_m, y_m = field.half_length_m + field.border_m - _ROBOT_M, field.half_width_m + field.border_m - _ROBOT_M
+    return abs(place.x_m) < x_m + _AT_WALL_M and abs(place.y_m) < y_m + _AT_WALL_M
 
 
 def movers(model: world_model_t, latency_s: float, own_number: int = 0) -> list[Mover]:

@@ -1,7 +1,7 @@
 """Finds a way around discs: the direction of the freest tangent, as in a visibility graph of one step."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from procs.model.field import Point
@@ -34,12 +34,18 @@ class Way(NamedTuple):
     """No direction is free."""
 
 
-def find_way(start: Point, target: Point, discs: Sequence[Disc], before_rad: float | None = None) -> Way:
+def find_way(
+    start: Point,
+    target: Point,
+    discs: Sequence[Disc],
+    before_rad: float | None = None,
+    possible: Callable[[Point], bool] | None = None,
+) -> Way:
     """Finds the free way that turns least from the straight one.
 
     A disc that covers the target shrinks until the target lies outside it, but not below its core; from a disc that
     covers the start the way leads out. `before_rad` is the direction of the last tick: staying on the same side is
-    preferred.
+    preferred. Detours lead only over places that are `possible`: not behind a wall.
     """
     for disc in discs:
         if math.dist(disc.middle, target) < disc.core_m + _CROWD_M:
@@ -61,12 +67,15 @@ def find_way(start: Point, target: Point, discs: Sequence[Disc], before_rad: flo
             free_m = _free_m(start, direction_rad, shrunk)
             if free_m < needed_m:
                 continue
+            turning_place = ahead(start, direction_rad, needed_m)
+            if possible and not possible(turning_place):
+                continue
             turn_rad = wrap_rad(direction_rad - straight_rad)
             cost_rad = abs(turn_rad)
             if before_rad is not None and turn_rad * wrap_rad(before_rad - straight_rad) < 0:
                 cost_rad += _SWITCH_RAD
             if best is None or cost_rad < best[0]:
-                length_m = needed_m + math.dist(ahead(start, direction_rad, needed_m), target)
+                length_m = needed_m + math.dist(turning_place, target)
                 best = cost_rad, Way(wrap_rad(direction_rad), length_m, free_m, blocked=False)
     return best[1] if best else Way(straight_rad, distance_m, _free_m(start, straight_rad, shrunk), blocked=True)
 

@@ -54,7 +54,7 @@ class Step(NamedTuple):
     drive: Drive | None = None
     dribble: bool = False
     kick_m_s: float = 0.0
-    """Above 0: kick now with that speed over the ground."""
+    """Above 0: kick now with that horizontal speed, relative to the robot."""
     elevation_rad: float = 0.0
     """Of that kick; 0.0: along the ground."""
     status: Status = Status.RUNNING

@@ -4,8 +4,10 @@ import math
 
 import pytest
 
+from procs.behaviour import obstacles
 from procs.behaviour.path import Disc, find_way
 from procs.model.field import Point
+from tests.procs.behaviour.behaviour_parts import FIELD
 
 START, TARGET = Point(0.0, 0.0), Point(4.0, 0.0)
 
@@ -68,3 +70,10 @@ def test_following_the_path_touches_no_disc_and_arrives() -> None:
         place = Point(place.x_m + step_m * math.cos(direction_rad), place.y_m + step_m * math.sin(direction_rad))
         assert all(math.dist(place, disc.middle) > disc.radius_m - 0.01 for disc in discs)
     assert math.dist(place, TARGET) < 0.01
+
+
+def test_no_way_leads_between_an_obstacle_and_the_wall() -> None:
+    at_wall, target, parked = Point(-3.7, -7.75), Point(-1.4, -6.8), Disc(Point(-3.1, -7.5), 0.62, 0.5)
+    towards_wall_rad = -0.9
+    way = find_way(at_wall, target, [parked], towards_wall_rad, lambda place: obstacles.inside_walls(place, FIELD))
+    assert 0.5 < way.direction_rad < 2.5
