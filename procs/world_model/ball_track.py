@@ -87,7 +87,7 @@ class Sighting:
     @property
     def weakness(self) -> float:
         """Rank of the source: the smaller, the better."""
-        return float(np.trace(self.covariance_m2)) / (_OWN_BONUS if self.own else 1.0)
+        return float(self.covariance_m2[0, 0] + self.covariance_m2[1, 1]) / (_OWN_BONUS if self.own else 1.0)
 
 
 @dataclass(frozen=True)
@@ -204,6 +204,7 @@ class BallTrack:
         self._confirm(sighting)
 
     def _confirm(self, sighting: Sighting) -> None:
-        self.confirmed[sighting.robot] = (self.time_us, sighting.weakness)
+        weakness = sighting.weakness
+        self.confirmed[sighting.robot] = (self.time_us, weakness)
         self.seen_us = self.time_us
-        self.doubts = tuple(doubt for doubt in self.doubts if doubt[1].weakness <= sighting.weakness)
+        self.doubts = tuple(doubt for doubt in self.doubts if doubt[1].weakness <= weakness)
