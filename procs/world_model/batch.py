@@ -5,6 +5,7 @@ Where sightings have an age, states go on with vx, vy (m/s), ax, ay (m/s²).
 The formulas are those of filterpy's `predict` and `update`, with which the tests compare them.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -55,10 +56,15 @@ def seen_at(states: Floats, covariances: Floats, age_s: float) -> tuple[Floats, 
     positions_m, gains = states[:, :2], covariances[:, :, :2]
     if not age_s:
         return positions_m, gains, gains[:, :2]
-    half_s2 = age_s**2 / 2
-    positions_m = positions_m - age_s * states[:, 2:4] + half_s2 * states[:, 4:6]
-    gains = gains - age_s * covariances[:, :, 2:4] + half_s2 * covariances[:, :, 4:6]
-    return positions_m, gains, gains[:, :2] - age_s * gains[:, 2:4] + half_s2 * gains[:, 4:6]
+    sight = _sight(age_s)
+    gains = covariances @ sight.T
+    return states @ sight.T, gains, sight @ gains
+
+
+@lru_cache(maxsize=64)
+def _sight(age_s: float) -> Floats:
+    """Returns the matrix (2, 6) from states to the places a while ago; cached."""
+    return np.asarray(np.kron(np.array((1.0, -age_s, age_s**2 / 2)), np.eye(2)), np.float64)
 
 
 def corrected(states: Floats, covariances: Floats, found: Innovation) -> tuple[Floats, Floats]:

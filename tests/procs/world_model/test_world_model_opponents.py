@@ -151,9 +151,9 @@ def test_team_keeps_the_newest_message_until_the_timeout() -> None:
     mates = team.localized(1.2, 5.0)
     assert [mate.name for mate in mates] == ["cyan1", "cyan2"]
     assert mates[1].position_at(1.2) == pytest.approx((2.2, 0.0))
-    assert mates[1].covariance_at(1.2)[0, 0] > mates[1].covariance_at(1.0)[0, 0]
+    places = Places(mates)
+    assert places.at(1.2)[1][1, 0, 0] > places.at(1.0)[1][1, 0, 0]
+    assert (places.first(1).at(1.2)[1] == places.at(1.2)[1][:1]).all()
     for time_s in (0.2, 1.2, 2.5):
-        positions_m, covariances_m2 = Places(mates).at(time_s)
-        assert positions_m == pytest.approx(np.array([mate.position_at(time_s) for mate in mates]))
-        assert covariances_m2 == pytest.approx(np.array([mate.covariance_at(time_s) for mate in mates]))
+        assert places.at(time_s)[0] == pytest.approx(np.array([mate.position_at(time_s) for mate in mates]))
     assert team.localized(6.1, 5.0) == []
