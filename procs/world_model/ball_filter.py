@@ -35,8 +35,9 @@ _STATES = 7
 _EACH = np.arange(_MODES)
 _PLACE, _VELOCITY, _SETTLED, _CARPET = slice(0, 2), slice(2, 4), slice(4, 6), 6
 _SPUN_SHARE = 1.0 - ROLLING_SHARE  # of the velocity at which the ball would roll with its spin, in the settled one
-_AXES = np.arange(_STATES)
-_KEPT = np.array(((1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0), *[(1.0,) * _STATES] * (_MODES - 1)))  # a resting ball stops
+_STILL = np.tile(np.eye(_STATES), (_MODES, 1, 1))
+"""Derivatives of states that stay, but for the velocities of a resting ball."""
+_STILL[Mode.RESTS, 2:6] = 0.0
 _TINY = 1e-9
 _LEAST_CARPET = 0.3
 _NOISE_M2_S3 = np.array((0.0001, 0.005, 5.0, 0.01))
@@ -97,6 +98,7 @@ class BallFilter:
         self._p[Mode.RESTS, 2:6, 2:6] = np.eye(4) * 1e-4
         self._p[:, _CARPET, _CARPET] = _CARPET_SD**2
         self._weights = _FIRST.copy()
+        self._mixture: tuple[Floats, Floats] | None = None  # mean and covariance, once asked for
 
     def copy(self) -> "BallFilter":
         """Returns the same mixture; neither follows what happens to the other."""
@@ -107,7 +109,7 @@ class BallFilter:
     @property
     def state(self) -> Floats:
         """(4): x, y, vx, vy."""
-        return np.asarray(self._weights @ self._x[:, :4])
+        return self._moments()[0][:4]
 
     @property
     def covariance(self) -> Floats:
@@ -133,7 +135,7 @@ class BallFilter:
 
     def lie_on(self, carpet: tuple[float, float]) -> None:
         """Takes the carpet that another track learnt, as `carpet` returns it."""
-        self._x, self._p = self._x.copy(), self._p.copy()
+        self._x, self._p, self._mixture = self._x.copy(), self._p.copy(), None
         self._x[:, _CARPET] = carpet[0]
         self._p[:, _CARPET] = self._p[:, :, _CARPET] = 0.0
         self._p[:, _CARPET, _CARPET] = carpet[1]
@@ -150,6 +152,7 @@ class BallFilter:
         slow = max(math.hypot(vx_m_s, vy_m_s), math.hypot(ux_m_s, uy_m_s)) < _SLOW_M_S
         self._mix(_passes(duration_s, round(contact * _LEVELS) / _LEVELS, slow))
         motion = self._rub(duration_s, rolling_m_s2)
+        self._mixture = None
         self._p = motion @ self._p @ motion.transpose(0, 2, 1) + _noise(duration_s)
 
     def _rub(self, duration_s: float, rolling_m_s2: float) -> Floats:
@@ -165,9 +168,8 @@ class BallFilter:
             states.append(moved)
             rows.append(derivatives)
         self._x = np.array(states)
-        motion = np.zeros((_MODES, _STATES, _STATES))
-        motion[:, _AXES, _AXES] = _KEPT
-        motion[1:, :6, 2:] = rows
+        motion = _STILL.copy()
+        motion[1:, :_CARPET, 2:] = rows
         return motion
 
     def stay_within(self, x_m: float, y_m: float, bounce: float) -> None:
@@ -183,6 +185,7 @@ class BallFilter:
             changes_m_s = np.where(beyond, (-bounce - 1.0) * self._x[:, _VELOCITY], 0.0)
             self._x[:, _VELOCITY] += changes_m_s
             self._x[:, _SETTLED] += ROLLING_SHARE * changes_m_s
+            self._mixture = None
 
     def see(self, position_m: Floats, covariance_m2: Floats) -> bool:
         """Takes a sighting (2) with its covariance (2, 2); returns False if it does not fit."""
@@ -192,6 +195,7 @@ class BallFilter:
         if evidence < _CLUTTER_1_M2:
             return False
         self._x, self._p = corrected(self._x, self._p, found)
+        self._mixture = None
         self._weights = np.maximum(likely / evidence, _LEAST)
         self._weights /= self._weights.sum()
         return True
@@ -257,15 +261,18 @@ class BallFilter:
         self._x, self._p = np.tile(x, (_MODES, 1)), np.tile(p, (_MODES, 1, 1))
 
     def _become(self, mode: Mode) -> None:
+        self._mixture = None
         self._weights = np.full(_MODES, _LEAST)
         self._weights[mode] = 1.0 - _LEAST * (_MODES - 1)
 
     def _moments(self) -> tuple[Floats, Floats]:
-        """Returns mean (7) and covariance (7, 7) of the mixture."""
-        mean = self._weights @ self._x
-        apart = self._x - mean
-        within = (self._weights @ self._p.reshape(_MODES, -1)).reshape(_STATES, _STATES)
-        return mean, within + (apart.T * self._weights) @ apart
+        """Returns mean (7) and covariance (7, 7) of the mixture, which are computed once."""
+        if self._mixture is None:
+            mean = self._weights @ self._x
+            apart = self._x - mean
+            within = (self._weights @ self._p.reshape(_MODES, -1)).reshape(_STATES, _STATES)
+            self._mixture = mean, within + (apart.T * self._weights) @ apart
+        return self._mixture
 
     def _mix(self, moves: Floats) -> None:
         """Lets the models exchange their beliefs by the probabilities (old, new) of passing from one to another."""

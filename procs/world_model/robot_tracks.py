@@ -148,8 +148,9 @@ def without_known(
         spreads = covariances_m2[None] + known_m2[:, None] + np.eye(2) * (within_m / 3) ** 2
         surprises = _surprises(positions_m[None] - known_m[:, None], spreads)
         near = surprises <= _GATE
-        known, seen = linear_sum_assignment(np.where(near, surprises, 1e3))
-        remain[seen[near[known, seen]]] = False
+        if near.any():
+            known, seen = linear_sum_assignment(np.where(near, surprises, 1e3))
+            remain[seen[near[known, seen]]] = False
     return remain
 
 

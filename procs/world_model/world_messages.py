@@ -30,7 +30,7 @@ def fill_world_model(
     message.mates = [_mate(mate, place_m, covariance_m2, now_s) for mate, place_m, covariance_m2 in rows]
     message.mate_roles = [mate.role for mate in mates]
     message.mate_agreements = [mate.agreement for mate in mates]
-    message.opponents = [_opponent(opponents, int(track)) for track in opponents.sure]
+    message.opponents = _opponents(opponents)
 
 
 def fill_team_message(message: team_message_t, view: OwnView, ball: Seen, obstacles: Seen) -> None:
@@ -77,9 +77,13 @@ def _mate(mate: Mate, place_m: list[float], covariance_m2: list[list[float]], no
     return estimate
 
 
-def _opponent(opponents: RobotTracks, track: int) -> robot_estimate_t:
-    estimate = robot_estimate_t()
-    estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s = opponents.states[track].tolist()
-    estimate.covariance_m2 = opponents.covariances[track, :2, :2].tolist()
-    estimate.age_s = float(opponents.ages_s[track])
-    return estimate
+def _opponents(opponents: RobotTracks) -> list[robot_estimate_t]:
+    """Returns the tracks that are no ghosts."""
+    sure, estimates = opponents.sure, []
+    values = opponents.states[sure], opponents.covariances[sure, :2, :2], opponents.ages_s[sure]
+    for state, covariance_m2, age_s in zip(*(each.tolist() for each in values), strict=True):
+        estimate = robot_estimate_t()
+        estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s = state
+        estimate.covariance_m2, estimate.age_s = covariance_m2, age_s
+        estimates.append(estimate)
+    return estimates
