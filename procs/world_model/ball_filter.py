@@ -35,11 +35,14 @@ _STATES = 7
 _EACH = np.arange(_MODES)
 _PLACE, _VELOCITY, _SETTLED, _CARPET = slice(0, 2), slice(2, 4), slice(4, 6), 6
 _SPUN_SHARE = 1.0 - ROLLING_SHARE  # of the velocity at which the ball would roll with its spin, in the settled one
-_BRAKES = np.array((0.0, 1.0, 0.0, 1.0))  # models in which friction acts on the velocity
-_SPINS = np.array((0.0, 0.0, ROLLING_SHARE, 0.0))  # share by which it turns the settled velocity instead
-_NOISE_M2_S3 = np.array((0.0002, 0.01, 5.0, 0.01))
+_STILL = np.tile(np.eye(_STATES), (_MODES, 1, 1))
+"""Derivatives of states that stay, but for the velocities of a resting ball."""
+_STILL[Mode.RESTS, 2:6] = 0.0
+_TINY = 1e-9
+_LEAST_CARPET = 0.3
+_NOISE_M2_S3 = np.array((0.0001, 0.005, 5.0, 0.01))
 """Spectral density of the acceleration that each model leaves open."""
-_SPIN_NOISE_M2_S3 = 0.01  # the same for the settled velocity
+_SPIN_NOISE_M2_S3 = 0.005  # the same for the settled velocity
 _HIT_M_S = 8.0  # deviation of the velocity that a hit adds
 _HIT_SPIN_M_S = 0.3  # deviation of the settled velocity by the spin that a hit adds
 _SLOW_M_S = 0.15  # a free ball this slow is about to rest
@@ -95,6 +98,7 @@ class BallFilter:
         self._p[Mode.RESTS, 2:6, 2:6] = np.eye(4) * 1e-4
         self._p[:, _CARPET, _CARPET] = _CARPET_SD**2
         self._weights = _FIRST.copy()
+        self._mixture: tuple[Floats, Floats] | None = None  # mean and covariance, once asked for
 
     def copy(self) -> "BallFilter":
         """Returns the same mixture; neither follows what happens to the other."""
@@ -105,7 +109,7 @@ class BallFilter:
     @property
     def state(self) -> Floats:
         """(4): x, y, vx, vy."""
-        return np.asarray(self._weights @ self._x[:, :4])
+        return self._moments()[0][:4]
 
     @property
     def covariance(self) -> Floats:
@@ -131,7 +135,7 @@ class BallFilter:
 
     def lie_on(self, carpet: tuple[float, float]) -> None:
         """Takes the carpet that another track learnt, as `carpet` returns it."""
-        self._x, self._p = self._x.copy(), self._p.copy()
+        self._x, self._p, self._mixture = self._x.copy(), self._p.copy(), None
         self._x[:, _CARPET] = carpet[0]
         self._p[:, _CARPET] = self._p[:, :, _CARPET] = 0.0
         self._p[:, _CARPET, _CARPET] = carpet[1]
@@ -147,54 +151,25 @@ class BallFilter:
         _, _, vx_m_s, vy_m_s, ux_m_s, uy_m_s, _ = self._x[Mode.FREE].tolist()
         slow = max(math.hypot(vx_m_s, vy_m_s), math.hypot(ux_m_s, uy_m_s)) < _SLOW_M_S
         self._mix(_passes(duration_s, round(contact * _LEVELS) / _LEVELS, slow))
-        x = self._x
         motion = self._rub(duration_s, rolling_m_s2)
+        self._mixture = None
         self._p = motion @ self._p @ motion.transpose(0, 2, 1) + _noise(duration_s)
-        np.maximum(x[:, _CARPET], 0.3, out=x[:, _CARPET])
 
     def _rub(self, duration_s: float, rolling_m_s2: float) -> Floats:
-        """Lets the ball move and the carpet act on it; returns the derivatives (modes, 7, 7) of the new states.
-
-        The direction of the slip is that of a normal distribution: it fades where the slip is uncertain, and where
-        the slip ends within the step.
-        """
-        x, p = self._x, self._p
-        before_m_s = x[:, _VELOCITY].copy()
-        slips_m_s = before_m_s - x[:, _SETTLED]
-        per_carpet_m_s = SLIDING_M_S2 * duration_s
-        steps_m_s = per_carpet_m_s * x[:, _CARPET]
-        unsure_m2_s2 = (
-            p[:, 2, 2] + p[:, 3, 3] + p[:, 4, 4] + p[:, 5, 5] - 2 * (p[:, 2, 4] + p[:, 3, 5])
-        ) / 2  # per axis
-        scales = 1.0 / np.sqrt((slips_m_s**2).sum(axis=1) + np.maximum(unsure_m2_s2, 0.0) + steps_m_s**2 + 1e-12)
-        directions = slips_m_s * scales[:, None]
-        slides = (directions**2).sum(axis=1)
-        turns = (np.eye(2) - directions[:, :, None] * directions[:, None]) * (steps_m_s * scales)[:, None, None]
-        settled_m_s = x[:, _SETTLED]
-        speeds_m_s = np.hypot(settled_m_s[:, 0], settled_m_s[:, 1]) + 1e-9
-        rolls_s = _BRAKES * (1.0 - np.sqrt(slides)) * duration_s
-        slower_m_s = np.minimum(rolling_m_s2 * x[:, _CARPET] * rolls_s, speeds_m_s)
-        rolled_m_s = settled_m_s * (slower_m_s / speeds_m_s)[:, None]
-        rubbed_m_s = directions * steps_m_s[:, None]
-        x[:, _VELOCITY] -= _BRAKES[:, None] * rubbed_m_s + rolled_m_s
-        x[:, _SETTLED] += _SPINS[:, None] * rubbed_m_s - rolled_m_s
-        x[Mode.RESTS, 2:6] = 0.0
-        x[:, _PLACE] += duration_s / 2 * (before_m_s + x[:, _VELOCITY])
-        x[Mode.RESTS, _PLACE] -= duration_s / 2 * before_m_s[Mode.RESTS]
-        motion = np.zeros((_MODES, _STATES, _STATES))
-        motion[:, np.arange(_STATES), np.arange(_STATES)] = 1.0
-        brakes, spins = _BRAKES[:, None, None] * turns, _SPINS[:, None, None] * turns
-        motion[:, _VELOCITY, _VELOCITY] -= brakes
-        motion[:, _VELOCITY, _SETTLED] = brakes
-        motion[:, _SETTLED, _VELOCITY] = spins
-        motion[:, _SETTLED, _SETTLED] -= spins
-        by_rolling = settled_m_s / speeds_m_s[:, None] * (rolling_m_s2 * rolls_s)[:, None]
-        motion[:, _VELOCITY, _CARPET] = -_BRAKES[:, None] * per_carpet_m_s * directions - by_rolling
-        motion[:, _SETTLED, _CARPET] = _SPINS[:, None] * per_carpet_m_s * directions - by_rolling
-        motion[Mode.RESTS, 2:6] = 0.0
-        motion[:, _PLACE, 2:] = duration_s / 2 * motion[:, _VELOCITY, 2:]
-        motion[1:, 0, 2] += duration_s / 2
-        motion[1:, 1, 3] += duration_s / 2
+        """Lets the ball move and the carpet act on it; returns the derivatives (modes, 7, 7) of the new states."""
+        p = self._p
+        slips_m2_s2 = p[:, 2, 2] + p[:, 3, 3] + p[:, 4, 4] + p[:, 5, 5] - 2.0 * (p[:, 2, 4] + p[:, 3, 5])
+        states, rows = [], []
+        for mode, state, slip_m2_s2 in zip(Mode, self._x.tolist(), slips_m2_s2.tolist(), strict=True):
+            if mode is Mode.RESTS:
+                states.append([*state[:2], 0.0, 0.0, 0.0, 0.0, state[6]])
+                continue
+            moved, derivatives = _rubbed(mode, state, slip_m2_s2 / 2.0, duration_s, rolling_m_s2)
+            states.append(moved)
+            rows.append(derivatives)
+        self._x = np.array(states)
+        motion = _STILL.copy()
+        motion[1:, :_CARPET, 2:] = rows
         return motion
 
     def stay_within(self, x_m: float, y_m: float, bounce: float) -> None:
@@ -210,6 +185,7 @@ class BallFilter:
             changes_m_s = np.where(beyond, (-bounce - 1.0) * self._x[:, _VELOCITY], 0.0)
             self._x[:, _VELOCITY] += changes_m_s
             self._x[:, _SETTLED] += ROLLING_SHARE * changes_m_s
+            self._mixture = None
 
     def see(self, position_m: Floats, covariance_m2: Floats) -> bool:
         """Takes a sighting (2) with its covariance (2, 2); returns False if it does not fit."""
@@ -219,6 +195,7 @@ class BallFilter:
         if evidence < _CLUTTER_1_M2:
             return False
         self._x, self._p = corrected(self._x, self._p, found)
+        self._mixture = None
         self._weights = np.maximum(likely / evidence, _LEAST)
         self._weights /= self._weights.sum()
         return True
@@ -284,15 +261,18 @@ class BallFilter:
         self._x, self._p = np.tile(x, (_MODES, 1)), np.tile(p, (_MODES, 1, 1))
 
     def _become(self, mode: Mode) -> None:
+        self._mixture = None
         self._weights = np.full(_MODES, _LEAST)
         self._weights[mode] = 1.0 - _LEAST * (_MODES - 1)
 
     def _moments(self) -> tuple[Floats, Floats]:
-        """Returns mean (7) and covariance (7, 7) of the mixture."""
-        mean = self._weights @ self._x
-        apart = self._x - mean
-        within = (self._weights @ self._p.reshape(_MODES, -1)).reshape(_STATES, _STATES)
-        return mean, within + (apart.T * self._weights) @ apart
+        """Returns mean (7) and covariance (7, 7) of the mixture, which are computed once."""
+        if self._mixture is None:
+            mean = self._weights @ self._x
+            apart = self._x - mean
+            within = (self._weights @ self._p.reshape(_MODES, -1)).reshape(_STATES, _STATES)
+            self._mixture = mean, within + (apart.T * self._weights) @ apart
+        return self._mixture
 
     def _mix(self, moves: Floats) -> None:
         """Lets the models exchange their beliefs by the probabilities (old, new) of passing from one to another."""
@@ -303,6 +283,64 @@ class BallFilter:
         spread = (apart * shares[:, :, None]).transpose(0, 2, 1) @ apart
         self._p = (shares @ self._p.reshape(_MODES, -1)).reshape(_MODES, _STATES, _STATES) + spread
         self._x, self._weights = mixed, weights / weights.sum()
+
+
+def _rubbed(
+    mode: Mode, state: list[float], slip_m2_s2: float, duration_s: float, rolling_m_s2: float
+) -> tuple[list[float], list[list[float]]]:
+    """Lets the carpet act on a moving ball for a step.
+
+    The direction of the slip is that of a normal distribution: it fades where the slip is uncertain, and where the slip
+    ends within the step. In a mouth friction turns the ball instead of braking it.
+
+    Args:
+        mode: the model.
+        state: (7).
+        slip_m2_s2: variance of the slip along an axis.
+        duration_s: the step.
+        rolling_m_s2: deceleration of the rolling ball on the usual carpet.
+
+    Returns:
+        The new state (7), and the derivatives of its first six values by the last five of the old one.
+    """
+    x_m, y_m, vx_m_s, vy_m_s, ux_m_s, uy_m_s, carpet = state
+    slip_x_m_s, slip_y_m_s = vx_m_s - ux_m_s, vy_m_s - uy_m_s
+    per_carpet_m_s = SLIDING_M_S2 * duration_s
+    step_m_s = per_carpet_m_s * carpet
+    slip2_m2_s2 = slip_x_m_s * slip_x_m_s + slip_y_m_s * slip_y_m_s
+    scale = 1.0 / math.sqrt(slip2_m2_s2 + max(0.0, slip_m2_s2) + step_m_s * step_m_s + _TINY)
+    along_x, along_y, turn = slip_x_m_s * scale, slip_y_m_s * scale, step_m_s * scale
+    xx, xy, yy = turn * (1.0 - along_x * along_x), -turn * along_x * along_y, turn * (1.0 - along_y * along_y)
+    if mode is Mode.HANDLED:
+        step_m_s, per_carpet_m_s = ROLLING_SHARE * step_m_s, ROLLING_SHARE * per_carpet_m_s
+        xx, xy, yy = ROLLING_SHARE * xx, ROLLING_SHARE * xy, ROLLING_SHARE * yy
+        wx_m_s, wy_m_s = vx_m_s, vy_m_s
+        ux_m_s, uy_m_s = ux_m_s + step_m_s * along_x, uy_m_s + step_m_s * along_y
+        by_velocity = [[1.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0]]
+        by_settled = [
+            [xx, xy, 1.0 - xx, -xy, per_carpet_m_s * along_x],
+            [xy, yy, -xy, 1.0 - yy, per_carpet_m_s * along_y],
+        ]
+    else:
+        speed_m_s = math.hypot(ux_m_s, uy_m_s) + _TINY
+        share = rolling_m_s2 * duration_s * (1.0 - math.sqrt(slip2_m2_s2) * scale) / speed_m_s  # that rolling takes
+        by_x_m_s, by_y_m_s = share * ux_m_s, share * uy_m_s
+        lost = min(1.0, share * carpet)
+        wx_m_s = vx_m_s - step_m_s * along_x - lost * ux_m_s
+        wy_m_s = vy_m_s - step_m_s * along_y - lost * uy_m_s
+        ux_m_s, uy_m_s = (1.0 - lost) * ux_m_s, (1.0 - lost) * uy_m_s
+        by_velocity = [
+            [1.0 - xx, -xy, xx, xy, -per_carpet_m_s * along_x - by_x_m_s],
+            [-xy, 1.0 - yy, xy, yy, -per_carpet_m_s * along_y - by_y_m_s],
+        ]
+        by_settled = [[0.0, 0.0, 1.0, 0.0, -by_x_m_s], [0.0, 0.0, 0.0, 1.0, -by_y_m_s]]
+    half_s = duration_s / 2.0
+    by_place = [[half_s * each for each in row] for row in by_velocity]
+    by_place[0][0] += half_s
+    by_place[1][1] += half_s
+    x_m, y_m = x_m + half_s * (vx_m_s + wx_m_s), y_m + half_s * (vy_m_s + wy_m_s)
+    moved = [x_m, y_m, wx_m_s, wy_m_s, ux_m_s, uy_m_s, max(_LEAST_CARPET, carpet)]
+    return moved, [*by_place, *by_velocity, *by_settled]
 
 
 @lru_cache(maxsize=128)

@@ -30,6 +30,7 @@ _FASTEST_M_S = 13.0
 _OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
 _NEVER_US = -(1 << 60)
 _WALL_BOUNCE, _NET_BOUNCE = 0.5, 0.05  # shares of the speed that they leave
+_INSIDE_M = 1.0  # a ball that far from the walls is within them whatever its model
 _POST_M = 0.2  # a ball touches a post at most that far from it
 _MARGIN_M, _MOST_M = 0.05, 0.2  # of a ball near a wall; a less certain place counts as if it were that certain
 _HELD_M = 0.03  # deviation of a held ball's place in the mouth
@@ -61,7 +62,10 @@ class Walls:
 
     def contain(self, ball: BallFilter) -> None:
         """Lets a ball beyond the walls bounce off them."""
-        in_goal = abs(ball.state[1]) < self.goal_half_width_m
+        x_m, y_m, *_ = np.abs(ball.state).tolist()
+        if x_m < self.goal_x_m - _INSIDE_M and y_m < self.y_m - _INSIDE_M:
+            return
+        in_goal = y_m < self.goal_half_width_m
         ball.stay_within(self.net_x_m if in_goal else self.x_m, self.y_m, _NET_BOUNCE if in_goal else _WALL_BOUNCE)
 
     def near(self, ball: BallFilter, duration_s: float) -> bool:
@@ -87,7 +91,7 @@ class Sighting:
     @property
     def weakness(self) -> float:
         """Rank of the source: the smaller, the better."""
-        return float(np.trace(self.covariance_m2)) / (_OWN_BONUS if self.own else 1.0)
+        return float(self.covariance_m2[0, 0] + self.covariance_m2[1, 1]) / (_OWN_BONUS if self.own else 1.0)
 
 
 @dataclass(frozen=True)
@@ -204,6 +208,7 @@ class BallTrack:
         self._confirm(sighting)
 
     def _confirm(self, sighting: Sighting) -> None:
-        self.confirmed[sighting.robot] = (self.time_us, sighting.weakness)
+        weakness = sighting.weakness
+        self.confirmed[sighting.robot] = (self.time_us, weakness)
         self.seen_us = self.time_us
-        self.doubts = tuple(doubt for doubt in self.doubts if doubt[1].weakness <= sighting.weakness)
+        self.doubts = tuple(doubt for doubt in self.doubts if doubt[1].weakness <= weakness)

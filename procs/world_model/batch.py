@@ -1,8 +1,11 @@
-"""Kalman filters side by side: n states x, y (m), vx, vy (m/s) with position sightings, in a few array operations.
+"""Kalman filters side by side: n states that begin with x, y (m), with position sightings, in a few array operations.
+
+Where sightings have an age, states go on with vx, vy (m/s), ax, ay (m/s²).
 
 The formulas are those of filterpy's `predict` and `update`, with which the tests compare them.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +17,7 @@ class Innovation(NamedTuple):
     """Differences of n sightings and n predictions, before they are used."""
 
     gains: Floats
-    """(n, 4, 2): covariance of state and sighting."""
+    """(n, k, 2): covariance of state and sighting."""
     inverses: Floats
     """(n, 2, 2): inverse covariance of the difference."""
     weighted: Floats
@@ -31,25 +34,41 @@ def innovation(
     """Compares sightings, captured `age_s` ago, with predictions.
 
     Args:
-        states: (n, 4).
-        covariances: (n, 4, 4) of the states.
+        states: (n, k).
+        covariances: (n, k, k) of the states.
         positions_m: (n, 2) or (2), sighted.
         spreads_m2: (n, 2, 2) or (2, 2), covariances of the sightings.
         age_s: time since the exposure.
     """
-    gains, differences = covariances[:, :, :2], positions_m - states[:, :2]
-    spreads = gains[:, :2]
-    if age_s:
-        gains = gains - age_s * covariances[:, :, 2:]
-        spreads = gains[:, :2] - age_s * gains[:, 2:]
-        differences += age_s * states[:, 2:]
+    predicted_m, gains, spreads = seen_at(states, covariances, age_s)
+    differences = positions_m - predicted_m
     inverses, determinants = inverted(spreads + spreads_m2)
     weighted = (inverses @ differences[..., None])[..., 0]
     return Innovation(gains, inverses, weighted, (differences * weighted).sum(axis=1), determinants)
 
 
+def seen_at(states: Floats, covariances: Floats, age_s: float) -> tuple[Floats, Floats, Floats]:
+    """Returns what a sighting captured `age_s` ago is expected to show.
+
+    Returns:
+        Positions (n, 2), their covariance with the states (n, k, 2), and their covariance (n, 2, 2).
+    """
+    positions_m, gains = states[:, :2], covariances[:, :, :2]
+    if not age_s:
+        return positions_m, gains, gains[:, :2]
+    sight = _sight(age_s)
+    gains = covariances @ sight.T
+    return states @ sight.T, gains, sight @ gains
+
+
+@lru_cache(maxsize=64)
+def _sight(age_s: float) -> Floats:
+    """Returns the matrix (2, 6) from states to the places a while ago; cached."""
+    return np.asarray(np.kron(np.array((1.0, -age_s, age_s**2 / 2)), np.eye(2)), np.float64)
+
+
 def corrected(states: Floats, covariances: Floats, found: Innovation) -> tuple[Floats, Floats]:
-    """Returns states (n, 4) and covariances (n, 4, 4) after the sightings."""
+    """Returns states (n, k) and covariances (n, k, k) after the sightings."""
     after = covariances - found.gains @ found.inverses @ found.gains.transpose(0, 2, 1)
     moved = states + (found.gains @ found.weighted[..., None])[..., 0]
     return moved, (after + after.transpose(0, 2, 1)) / 2  # rounding errors would grow
@@ -63,9 +82,3 @@ def inverted(matrices: Floats) -> tuple[Floats, Floats]:
     inverses[..., 0, 0], inverses[..., 1, 1] = d, a
     inverses[..., 0, 1] = inverses[..., 1, 0] = -b
     return inverses / determinants[..., None, None], determinants
-
-
-def drift(covariances: Floats, duration_s: float) -> None:
-    """Adds to the positions, in place, what the velocities (n, 4, 4) leave open after `duration_s`."""
-    covariances[:, :2] += duration_s * covariances[:, 2:]
-    covariances[:, :, :2] += duration_s * covariances[:, :, 2:]

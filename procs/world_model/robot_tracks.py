@@ -1,35 +1,51 @@
-"""Tracks of the robots that are seen as obstacles: a Kalman filter for each, all in one batch."""
+"""Tracks of the robots that are seen as obstacles: a Kalman filter for each, all in one batch.
 
+Robots drive with an acceleration that lasts a while (Singer, 1970): without it as a state, tracks lag behind robots
+that start, and lead those that brake.
+"""
+
+import math
 from functools import lru_cache
 
 import numpy as np
 
 from procs.model.estimation import linear_sum_assignment
 from procs.model.frames import Flags, Floats, Indices
-from procs.world_model.batch import corrected, drift, innovation, inverted
+from procs.world_model.batch import corrected, innovation, inverted, seen_at
 
-_NOISE_M2_S3 = 1.25  # spectral density of the acceleration: robots change their velocity by 1.1 m/s in a second
+_STATES = 6
+_ACCELERATION_M_S2 = 3.0  # deviation of a robot's acceleration along an axis
+_LASTS_S = 0.35  # time constant of an acceleration
+_NOISE_M2_S3 = 0.1  # spectral density of accelerations that do not last
 _UNKNOWN_SPEED_M_S = 1.5
 _GATE = 9.2  # chi-square, 2 degrees of freedom, 99 %
 _FARTHEST_M = 1.5
 _SAME_M = 0.45  # robots are 0.5 m wide
-_AXES = np.arange(4)
+_AXES = np.arange(_STATES)
 
 
 class RobotTracks:
     """n tracks of position and velocity in the world frame."""
 
     def __init__(self) -> None:
-        self.states: Floats = np.zeros((0, 4))
-        """(n, 4): x, y (m), vx, vy (m/s)."""
-        self.covariances: Floats = np.zeros((0, 4, 4))
-        """(n, 4, 4) of the states."""
+        self._x: Floats = np.zeros((0, _STATES))  # x, y (m), vx, vy (m/s), ax, ay (m/s²)
+        self._p: Floats = np.zeros((0, _STATES, _STATES))
         self.ages_s: Floats = np.zeros(0)
         """(n): time since each robot was last seen."""
         self._sightings: Indices = np.zeros(0, np.intp)
 
     def __len__(self) -> int:
-        return len(self.states)
+        return len(self._x)
+
+    @property
+    def states(self) -> Floats:
+        """(n, 4): x, y (m), vx, vy (m/s)."""
+        return self._x[:, :4]
+
+    @property
+    def covariances(self) -> Floats:
+        """(n, 4, 4) of the states."""
+        return self._p[:, :4, :4]
 
     @property
     def sure(self) -> Indices:
@@ -42,9 +58,9 @@ class RobotTracks:
         current = self.ages_s <= np.where(self._sightings > 1, timeout_s, timeout_s / 4)
         if not current.all():
             self._keep(current)
-        self.states[:, :2] += duration_s * self.states[:, 2:]
-        drift(self.covariances, duration_s)
-        self.covariances += _noise(duration_s)
+        motion, noise = _motion(duration_s)
+        self._x = self._x @ motion.T
+        self._p = motion @ self._p @ motion.T + noise
 
     def see(self, positions_m: Floats, covariances_m2: Floats, age_s: float = 0.0) -> None:
         """Takes one robot's sightings of a frame, captured `age_s` ago, each of a different robot.
@@ -58,9 +74,9 @@ class RobotTracks:
             return
         tracks, seen = self._assign(positions_m, covariances_m2, age_s)
         if len(tracks):
-            before = self.states[tracks], self.covariances[tracks]
+            before = self._x[tracks], self._p[tracks]
             found = innovation(*before, positions_m[seen], covariances_m2[seen], age_s)
-            self.states[tracks], self.covariances[tracks] = corrected(*before, found)
+            self._x[tracks], self._p[tracks] = corrected(*before, found)
             self.ages_s[tracks] = np.minimum(self.ages_s[tracks], age_s)
             self._sightings[tracks] += 1
         if len(seen) < len(positions_m):
@@ -73,9 +89,7 @@ class RobotTracks:
         """Returns the tracks that are seen, and the sighting of each."""
         if not len(self):
             return np.zeros(0, np.intp), np.zeros(0, np.intp)
-        predicted_m = self.states[:, :2] - age_s * self.states[:, 2:]
-        gains = self.covariances[:, :2] - age_s * self.covariances[:, 2:]
-        spreads = gains[:, :, :2] - age_s * gains[:, :, 2:]
+        predicted_m, _, spreads = seen_at(self._x, self._p, age_s)
         apart_m = positions_m[None] - predicted_m[:, None]
         surprises = _surprises(apart_m, spreads[:, None] + covariances_m2[None])
         near = (surprises <= _GATE) & ((apart_m**2).sum(axis=2) <= _FARTHEST_M**2)
@@ -85,11 +99,13 @@ class RobotTracks:
 
     def _begin(self, positions_m: Floats, covariances_m2: Floats, age_s: float) -> None:
         count = len(positions_m)
-        states, covariances = np.zeros((count, 4)), np.zeros((count, 4, 4))
+        states, covariances = np.zeros((count, _STATES)), np.zeros((count, _STATES, _STATES))
         states[:, :2], covariances[:, :2, :2] = positions_m, covariances_m2
-        covariances[:, _AXES, _AXES] += _UNKNOWN_SPEED_M_S**2 * np.array((age_s**2, age_s**2, 1.0, 1.0))
-        self.states = np.concatenate((self.states, states))
-        self.covariances = np.concatenate((self.covariances, covariances))
+        moved_m, speed_m2_s2 = _UNKNOWN_SPEED_M_S * age_s, _UNKNOWN_SPEED_M_S**2
+        unknown = (moved_m**2, moved_m**2, speed_m2_s2, speed_m2_s2, _ACCELERATION_M_S2**2, _ACCELERATION_M_S2**2)
+        covariances[:, _AXES, _AXES] += np.array(unknown)
+        self._x = np.concatenate((self._x, states))
+        self._p = np.concatenate((self._p, covariances))
         self.ages_s = np.concatenate((self.ages_s, np.full(count, age_s)))
         self._sightings = np.concatenate((self._sightings, np.ones(count, np.intp)))
 
@@ -107,7 +123,7 @@ class RobotTracks:
         self._keep(kept)
 
     def _keep(self, which: Flags) -> None:
-        self.states, self.covariances = self.states[which], self.covariances[which]
+        self._x, self._p = self._x[which], self._p[which]
         self.ages_s, self._sightings = self.ages_s[which], self._sightings[which]
 
 
@@ -132,19 +148,34 @@ def without_known(
         spreads = covariances_m2[None] + known_m2[:, None] + np.eye(2) * (within_m / 3) ** 2
         surprises = _surprises(positions_m[None] - known_m[:, None], spreads)
         near = surprises <= _GATE
-        known, seen = linear_sum_assignment(np.where(near, surprises, 1e3))
-        remain[seen[near[known, seen]]] = False
+        if near.any():
+            known, seen = linear_sum_assignment(np.where(near, surprises, 1e3))
+            remain[seen[near[known, seen]]] = False
     return remain
 
 
 @lru_cache(maxsize=32)
-def _noise(duration_s: float) -> Floats:
-    """Returns the process noise (4, 4) of a robot that accelerates at random; cached."""
-    noise = np.zeros((4, 4))
-    place, both, velocity = _NOISE_M2_S3 * np.array((duration_s**3 / 3, duration_s**2 / 2, duration_s))
-    noise[_AXES, _AXES] = place, place, velocity, velocity
-    noise[0, 2] = noise[2, 0] = noise[1, 3] = noise[3, 1] = both
-    return noise
+def _motion(duration_s: float) -> tuple[Floats, Floats]:
+    """Returns how states move in a step (6, 6), and the noise (6, 6) that it adds; cached."""
+    fades = math.exp(-duration_s / _LASTS_S)
+    motion = np.array(
+        (
+            (1.0, duration_s, _LASTS_S * (duration_s - _LASTS_S * (1.0 - fades))),
+            (0.0, 1.0, _LASTS_S * (1.0 - fades)),
+            (0.0, 0.0, fades),
+        )
+    )
+    t = duration_s
+    lasting = np.array(
+        (
+            (t**5 / 20, t**4 / 8, t**3 / 6),
+            (t**4 / 8, t**3 / 3, t**2 / 2),
+            (t**3 / 6, t**2 / 2, t),
+        )
+    )
+    passing = np.array(((t**3 / 3, t**2 / 2, 0.0), (t**2 / 2, t, 0.0), (0.0, 0.0, 0.0)))
+    noise: Floats = 2.0 * _ACCELERATION_M_S2**2 / _LASTS_S * lasting + _NOISE_M2_S3 * passing
+    return np.asarray(np.kron(motion, np.eye(2)), np.float64), np.asarray(np.kron(noise, np.eye(2)), np.float64)
 
 
 def _surprises(innovations: Floats, spreads: Floats) -> Floats:

@@ -61,6 +61,8 @@ class Seen:
 
         `sight` and `pose` are the numbers of frames that share one error of the sight and of the own pose.
         """
+        if sight == pose == 1.0:
+            return self
         return Seen(self.positions_m, self.by_sight_m2 * sight, self.by_pose_m2 * pose, self.radii_m)
 
 

@@ -47,11 +47,6 @@ class Mate:
         passed_s = min(_EXTRAPOLATED_S, max(-_EXTRAPOLATED_S, time_s - self.told_s))
         return self.position_m + self.velocity_m_s * passed_s
 
-    def covariance_at(self, time_s: float) -> Floats:
-        """Returns the covariance (2, 2) in m² of `position_at`."""
-        drift_m = _DRIFT_M_S * abs(time_s - self.told_s)
-        return self.covariance_m2 + _UNIT * (_LEAST_M + drift_m) ** 2
-
 
 class Places:
     """Positions of k mates at times near their messages, computed in one batch."""
@@ -62,8 +57,21 @@ class Places:
         self._velocities_m_s = np.array([mate.velocity_m_s for mate in mates]).reshape(-1, 2)
         self._covariances_m2 = np.array([mate.covariance_m2 for mate in mates]).reshape(-1, 2, 2)
 
+    @property
+    def velocities_m_s(self) -> Floats:
+        """(k, 2), world frame."""
+        return self._velocities_m_s
+
+    def first(self, count: int) -> "Places":
+        """Returns the places of the first mates."""
+        if count == len(self._told_s):
+            return self
+        made = Places.__new__(Places)
+        made.__dict__.update({name: values[:count] for name, values in self.__dict__.items()})
+        return made
+
     def at(self, time_s: float) -> tuple[Floats, Floats]:
-        """Returns positions (k, 2) and their covariances (k, 2, 2), as `Mate` has them."""
+        """Returns probable positions (k, 2) and their covariances (k, 2, 2), which grow away from the messages."""
         passed_s = time_s - self._told_s
         extrapolated_s = np.clip(passed_s, -_EXTRAPOLATED_S, _EXTRAPOLATED_S)
         drifts_m = _LEAST_M + _DRIFT_M_S * np.abs(passed_s)

@@ -9,7 +9,7 @@ from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.own_view import OwnView
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
-from procs.world_model.team import Mate
+from procs.world_model.team import Mate, Places
 
 
 def fill_world_model(
@@ -17,18 +17,20 @@ def fill_world_model(
     view: OwnView,
     ball: BallTracker,
     mates: Sequence[Mate],
+    team: Places,
     opponents: RobotTracks,
     now_s: float,
 ) -> None:
-    """Fills in the beliefs of the robot at `now_s`."""
+    """Fills in the beliefs of the robot at `now_s`; the first of the team are the mates."""
     message.localized = view.localized
     message.x_m, message.y_m, message.heading_rad = view.pose.tolist()
     message.vx_m_s, message.vy_m_s = view.velocity_m_s.tolist()
     message.ball = _ball(ball)
-    message.mates = [_mate(mate, now_s) for mate in mates]
+    rows = zip(mates, *(values.tolist() for values in team.first(len(mates)).at(now_s)), strict=True)
+    message.mates = [_mate(mate, place_m, covariance_m2, now_s) for mate, place_m, covariance_m2 in rows]
     message.mate_roles = [mate.role for mate in mates]
     message.mate_agreements = [mate.agreement for mate in mates]
-    message.opponents = [_opponent(opponents, int(track)) for track in opponents.sure]
+    message.opponents = _opponents(opponents)
 
 
 def fill_team_message(message: team_message_t, view: OwnView, ball: Seen, obstacles: Seen) -> None:
@@ -55,28 +57,33 @@ def fill_team_message(message: team_message_t, view: OwnView, ball: Seen, obstac
 def _ball(ball: BallTracker) -> ball_estimate_t:
     estimate = ball_estimate_t()
     estimate.known = ball.known
-    if ball.known:
-        estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s = ball.track.state.tolist()
-        estimate.covariance = ball.track.covariance.tolist()
+    if estimate.known:
+        track = ball.track
+        estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s = track.state.tolist()
+        estimate.covariance = track.covariance.tolist()
         estimate.age_s = ball.age_s
         estimate.observers = ball.observers
     return estimate
 
 
-def _mate(mate: Mate, now_s: float) -> robot_estimate_t:
+def _mate(mate: Mate, place_m: list[float], covariance_m2: list[list[float]], now_s: float) -> robot_estimate_t:
     estimate = robot_estimate_t()
     estimate.name, estimate.number = mate.name, mate.number
-    estimate.x_m, estimate.y_m = mate.position_at(now_s).tolist()
+    estimate.x_m, estimate.y_m = place_m
     estimate.heading_rad = mate.heading_rad
     estimate.vx_m_s, estimate.vy_m_s = mate.velocity_m_s.tolist()
-    estimate.covariance_m2 = mate.covariance_at(now_s).tolist()
+    estimate.covariance_m2 = covariance_m2
     estimate.age_s = now_s - mate.told_s
     return estimate
 
 
-def _opponent(opponents: RobotTracks, track: int) -> robot_estimate_t:
-    estimate = robot_estimate_t()
-    estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s = opponents.states[track].tolist()
-    estimate.covariance_m2 = opponents.covariances[track, :2, :2].tolist()
-    estimate.age_s = float(opponents.ages_s[track])
-    return estimate
+def _opponents(opponents: RobotTracks) -> list[robot_estimate_t]:
+    """Returns the tracks that are no ghosts."""
+    sure, estimates = opponents.sure, []
+    values = opponents.states[sure], opponents.covariances[sure, :2, :2], opponents.ages_s[sure]
+    for state, covariance_m2, age_s in zip(*(each.tolist() for each in values), strict=True):
+        estimate = robot_estimate_t()
+        estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s = state
+        estimate.covariance_m2, estimate.age_s = covariance_m2, age_s
+        estimates.append(estimate)
+    return estimates

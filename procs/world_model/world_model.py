@@ -104,7 +104,7 @@ class WorldModel(Component):
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
         self._ball = BallTracker()
-        self._walls = Walls.of(self.config.field, self.config.ball)
+        self._apply_settings()
         self._opponents = RobotTracks()
         self._team = Team()
         self._view: OwnView | None = None
@@ -124,15 +124,24 @@ class WorldModel(Component):
         self._view = view
         told = self._listen(now_s)
         mates = self._team.localized(now_s, config.mate_timeout_s)
-        self._follow_ball(view, mates, told, passed_s)
-        self._follow_opponents(view, mates, told, passed_s)
-        fill_world_model(self.world_model.value, view, self._ball, mates, self._opponents, now_s)
+        team = Places([*mates, view.as_mate(self._robot, now_s)] if view.localized else mates)
+        self._follow_ball(view, team, told, passed_s)
+        self._follow_opponents(view, team, len(mates), told, passed_s)
+        fill_world_model(self.world_model.value, view, self._ball, mates, team, self._opponents, now_s)
         self.world_model.value.ball_holder = self._holder(mates)
         if not config.use_ball_velocity:
             self.world_model.value.ball.vx_m_s = self.world_model.value.ball.vy_m_s = 0.0
         self.world_model.write()
         if self._message_due():
             self._tell_team(view)
+
+    def config_changed(self) -> None:
+        self._apply_settings()
+
+    def _apply_settings(self) -> None:
+        self._walls = Walls.of(self.config.field, self.config.ball)
+        self._rules = self._opponent_settings()
+        self._mouth_m = self.config.robot.held_ball_m(self.config.ball)  # from the robot's middle to a held ball's
 
     def _listen(self, now_s: float) -> list[tuple[team_message_t, Mate]]:
         """Returns the messages of mates that arrived in this tick and are not older than known ones."""
@@ -144,7 +153,7 @@ class WorldModel(Component):
         return told if self.config.use_team_sight else []
 
     def _follow_ball(
-        self, view: OwnView, mates: list[Mate], told: list[tuple[team_message_t, Mate]], passed_s: float
+        self, view: OwnView, team: Places, told: list[tuple[team_message_t, Mate]], passed_s: float
     ) -> None:
         config, kicker = self.config, self.kicker_state.value
         kicked = kicker.kicks != self._kicks and plausible(kicker.kick_speed_m_s)
@@ -157,7 +166,7 @@ class WorldModel(Component):
             message.kicks, message.kick_us = kicker.kicks, self.clock.now_us - round(passed_s / 2 * US_PER_S)
             message.kick_vx_m_s, message.kick_vy_m_s = velocity_m_s.tolist()
         self._take_mates_kicks(told, passed_s)
-        contact = self._contact(view, mates, passed_s)
+        contact = self._contact(team, passed_s)
         self._ball.advance(passed_s, config.ball_timeout_s, config.ball.rolling_m_s2, contact, self._walls)
         if kicker.ball_held and view.localized and not kicked:
             self._ball.hold(self._robot, *view.held_ball(self._mouth_m))
@@ -174,18 +183,15 @@ class WorldModel(Component):
             if mate.holds_ball and mate.localized and told_s <= _STALE_S:
                 self._ball.hold(mate.name, *held_by(mate, self._mouth_m), told_s)
 
-    def _contact(self, view: OwnView, mates: list[Mate], passed_s: float) -> float:
+    def _contact(self, team: Places, passed_s: float) -> float:
         """Returns the probability that a robot, a post or the wall around the field reaches the ball in a tick."""
         if not self._ball.known:
             return 0.0
-        track = self._ball.track
+        track, rivals = self._ball.track, self._opponents
         if self._walls.near(track, passed_s):
             return 1.0
-        known = [*mates, view.as_mate(self._robot, self.clock.now_s)] if view.localized else mates
-        rivals = self._opponents
-        places_m, places_m2 = Places(known).at(self.clock.now_s)
-        velocities_m_s = np.array([mate.velocity_m_s for mate in known]).reshape(-1, 2)
-        robots = np.concatenate((np.column_stack((places_m, velocities_m_s)), rivals.states))
+        places_m, places_m2 = team.at(self.clock.now_s)
+        robots = np.concatenate((np.concatenate((places_m, team.velocities_m_s), axis=1), rivals.states))
         spreads_m2 = np.concatenate((places_m2, rivals.covariances[:, :2, :2]))
         variances_m2 = (spreads_m2[:, 0, 0] + spreads_m2[:, 1, 1]) / 2
         return touch_probability(track, robots, variances_m2, self._mouth_m, passed_s)
@@ -209,30 +215,25 @@ class WorldModel(Component):
                 self._ball.kick(velocity_m_s, age_s - passed_s, mouth)
 
     def _follow_opponents(
-        self, view: OwnView, mates: list[Mate], told: list[tuple[team_message_t, Mate]], passed_s: float
+        self, view: OwnView, team: Places, mates: int, told: list[tuple[team_message_t, Mate]], passed_s: float
     ) -> None:
-        config, rules, now_s = self.config, self._opponent_settings(), self.clock.now_s
+        """Takes the obstacles of the own camera and of mates; the first `mates` robots of the team are the others."""
+        config, rules, now_s = self.config, self._rules, self.clock.now_s
         self._opponents.predict(passed_s, config.opponent_timeout_s)
         if self.obstacle_percepts.refreshed:
             percepts = self.obstacle_percepts.value
             age_s = self._age_s(percepts.capture_us)
-            seen = strangers(view.obstacles(percepts, age_s), Places(mates), now_s - age_s, rules)
+            seen = strangers(view.obstacles(percepts, age_s), team.first(mates), now_s - age_s, rules)
             self._untold_obstacles = seen
             self.team_message.value.obstacles_capture_us = percepts.capture_us or self.clock.now_us
             seen = seen.widened(config.sight_correlation, config.pose_correlation)
             self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
-        team = Places([*mates, view.as_mate(self._robot, now_s)] if view.localized else mates)
         for message, _ in told:
             age_s = self._age_s(message.obstacles_capture_us or message.header.time_us)
             if 0.0 <= age_s <= _STALE_S:
                 seen = obstacles_of(message).widened(config.team_correlation, 1.0)
                 seen = strangers(seen, team, now_s - age_s, rules)
                 self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
-
-    @property
-    def _mouth_m(self) -> float:
-        """From the robot's middle to the middle of a ball that it holds."""
-        return self.config.robot.held_ball_m(self.config.ball)
 
     def _holder(self, mates: list[Mate]) -> str:
         """Returns the robot of the team that has the ball in its mouth, `?` for an opponent at the ball, or nothing."""
