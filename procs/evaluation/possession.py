@@ -7,6 +7,7 @@ from procs.evaluation.beliefs import Samples
 from procs.evaluation.piece import Piece
 from procs.referee.restarts import State
 
+_SHOOTING = ("shoot", "lob")  # skills
 _SHOT_M_S = 6.0
 _FREE_S = 0.3  # without a touch for so long the ball is free
 _BOUNCED_S = 0.6  # a ball that is free again so soon after its capture has bounced off
@@ -22,6 +23,8 @@ def possession(piece: Piece) -> Samples:
         "goals of cyan": np.array([(scores[0], piece.minutes)]),
         "goals of magenta": np.array([(scores[1], piece.minutes)]),
         "goals of cyan less those of magenta": np.array([(scores[0] - scores[1], piece.minutes)]),
+        "won by cyan": np.array([scores[0] > scores[1]], np.float64),
+        "lost by cyan": np.array([scores[0] < scores[1]], np.float64),
         "ball free": np.array(list(free.values()), np.float64),
         "captures that bounce": np.array(_bounces(piece), np.float64),
     }
@@ -32,7 +35,7 @@ def _played(piece: Piece) -> list[int]:
 
 
 def _shots(piece: Piece) -> list[match_event_t]:
-    """Returns the fast kicks of the skill that shoots."""
+    """Returns the fast kicks of the skills that shoot."""
     skills = piece.by_robot.get("skill_status", {})
     return [
         event
@@ -40,7 +43,7 @@ def _shots(piece: Piece) -> list[match_event_t]:
         for event in events
         if event.kind == match_event_t.KICK and event.speed_m_s > _SHOT_M_S
         for running in [skills.get(event.robot, {}).get(tick - 1)]
-        if running and running.skill == "shoot"
+        if running and running.skill in _SHOOTING
     ]
 
 

@@ -129,6 +129,8 @@ MEASURES = [
     Measure("goals of cyan", rate, "/min", ""),
     Measure("goals of magenta", rate, "/min", ""),
     Measure("goals of cyan less those of magenta", ratio, "/min", ""),
+    Measure("won by cyan", mean, "share", ""),
+    Measure("lost by cyan", mean, "share", ""),
 ]
 """Rows of the table in their order."""
 

@@ -237,13 +237,24 @@ def test_captures_that_bounce_and_a_free_ball_are_counted() -> None:
     assert found["ball free"].mean() == pytest.approx(23 / 60, abs=0.04)
 
 
-def test_shots_are_fast_kicks_of_the_skill_that_shoots() -> None:
+@pytest.mark.parametrize(("skill", "shots"), [("shoot", 1), ("lob", 1), ("pass", 0)])
+def test_shots_are_fast_kicks_of_the_skills_that_shoot(skill: str, shots: int) -> None:
     made = piece([robot("cyan1", 0.0, 0.0)])
     status = skill_status_t()
-    status.skill = "shoot"
+    status.skill = skill
     made.by_robot["skill_status"] = {"cyan1": dict.fromkeys(made.truth, status)}
     made.events = {FIRST + at: [event(match_event_t.KICK, "cyan1", speed)] for at, speed in ((5, 10.0), (20, 3.0))}
-    assert possession(made)["shots"][0, 0] == 1
+    assert possession(made)["shots"][0, 0] == shots
+
+
+@pytest.mark.parametrize(("cyan", "magenta", "won", "lost"), [(2, 1, 1.0, 0.0), (1, 1, 0.0, 0.0), (0, 1, 0.0, 1.0)])
+def test_matches_are_won_and_lost_by_goals(cyan: int, magenta: int, won: float, lost: float) -> None:
+    made = piece([robot("cyan1", 0.0, 0.0)])
+    game = _playing()
+    game.score_cyan, game.score_magenta = cyan, magenta
+    made.game = dict.fromkeys(made.truth, game)
+    found = possession(made)
+    assert (found["won by cyan"].tolist(), found["lost by cyan"].tolist()) == ([won], [lost])
 
 
 def _playing() -> game_state_t:
