@@ -40,9 +40,9 @@ _STILL = np.tile(np.eye(_STATES), (_MODES, 1, 1))
 _STILL[Mode.RESTS, 2:6] = 0.0
 _TINY = 1e-9
 _LEAST_CARPET = 0.3
-_NOISE_M2_S3 = np.array((0.0001, 0.005, 5.0, 0.01))
+_NOISE_M2_S3 = np.array((0.0001, 0.002, 5.0, 0.01))
 """Spectral density of the acceleration that each model leaves open."""
-_SPIN_NOISE_M2_S3 = 0.005  # the same for the settled velocity
+_SPIN_NOISE_M2_S3 = 0.002  # the same for the settled velocity
 _HIT_M_S = 8.0  # deviation of the velocity that a hit adds
 _HIT_SPIN_M_S = 0.3  # deviation of the settled velocity by the spin that a hit adds
 _SLOW_M_S = 0.15  # a free ball this slow is about to rest

@@ -180,7 +180,8 @@ class WorldModel(Component):
             seen = ball_of(message).widened(config.team_correlation, 1.0)
             self._see(mate.name, seen, self._age_s(message.ball_capture_us or message.header.time_us))
             told_s = self.clock.since_s(message.header.time_us)
-            if mate.holds_ball and mate.localized and told_s <= _STALE_S:
+            kicked_just_now = 0.0 <= (message.header.time_us - message.kick_us) / US_PER_S < self.clock.period_s
+            if mate.holds_ball and mate.localized and told_s <= _STALE_S and not kicked_just_now:
                 self._ball.hold(mate.name, *held_by(mate, self._mouth_m), told_s)
 
     def _contact(self, team: Places, passed_s: float) -> float:

@@ -13,8 +13,8 @@ from procs.world_model.ball_tracker import BallTracker
 Floats = NDArray[np.float64]
 PERIOD_S = 0.05
 ROLLING_M_S2 = 0.4
-ROLLING_NOISE_M2_S3 = 0.01
-"""Spectral density of the accelerations that the filter expects of a rolling ball."""
+ROLLING_NOISE_M2_S3 = 0.004
+"""Spectral density of the accelerations that the filter expects of a rolling ball, rare hits included."""
 
 
 class Eye:

@@ -188,3 +188,21 @@ def test_kick_is_told_at_once_and_a_second_time() -> None:
         robot.bench.iterate()
         assert len(told) == before + expected
         assert (told[-1].kicks, told[-1].kick_us) == (1, kick_us)
+
+
+def test_kick_counts_although_the_mouth_still_saw_the_ball() -> None:
+    """The ball left late in a tick: in its message the mate reports the kick and a ball in its mouth."""
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for tick in range(12):
+        now_us = robot.bench.time_us + round(PERIOD_S * 1e6)
+        message = team_message_t()
+        message.robot, message.localized, message.ball_held = "cyan2", True, tick < 11
+        message.header.time_us, message.x_m = now_us, 2.0
+        if tick >= 10:
+            message.kicks, message.kick_us = 1, 10 * round(PERIOD_S * 1e6) + 25_000
+            message.kick_vx_m_s = 6.0
+        robot.sense(None, [])
+        robot.bench.port("team_inbox").put(messages=[message])
+        robot.bench.iterate()
+        if tick == 10:
+            assert robot.world.ball.vx_m_s == pytest.approx(6.0, abs=0.3)
