@@ -6,6 +6,7 @@ from fwk import Clock, Component, Config, Reads, Writes
 from lcmtypes.robot import kicker_state_t, motor_command_t, odometry_t
 from lcmtypes.soccer import drive_target_t, navigator_state_t, world_model_t
 from procs.behaviour import motion, obstacles
+from procs.behaviour.identity import number_of_player
 from procs.behaviour.motion import STANDSTILL, Limits, Pose, Velocity
 from procs.behaviour.obstacles import APART_M
 from procs.behaviour.path import Way, find_way
@@ -13,7 +14,7 @@ from procs.behaviour.velocity_obstacles import safe_velocity
 from procs.model.ball import BALL
 from procs.model.field import Field, Point
 from procs.model.geometry import clamp, plausible, wrap_rad
-from procs.model.robot import ROBOT, number_of
+from procs.model.robot import PLAYERS, ROBOT, Players
 
 _FORWARD = 0.8  # cosine of the largest angle between a change of velocity towards the ball and the heading
 
@@ -25,6 +26,8 @@ class NavigatorConfig(Config):
     """Limits of the robot's motion."""
     field: Field = Field()
     """Measures of the field."""
+    players: Players = dict(PLAYERS)
+    """Team and number of each robot."""
     target_timeout_s: float = 0.5
     """The robot stops when its target or its world model is older."""
     near_m: float = 0.08
@@ -52,7 +55,7 @@ class Navigator(Component):
     navigator_state: Writes[navigator_state_t]
 
     def init(self) -> None:
-        self._number = number_of(self.name.rpartition("/")[0])
+        self._robot = self.name.rpartition("/")[0]
         self._before = STANDSTILL  # commanded, world frame
         self._direction_rad: float | None = None
         self._blind = False  # the commanded velocity is in the robot frame
@@ -119,7 +122,9 @@ class Navigator(Component):
         self._command(wanted, pose.heading_rad)
 
     def _give_way(self, wanted: Velocity, place: Point, model: world_model_t) -> Velocity:
-        movers = obstacles.movers(model, self.config.limits.latency_s, self._number)
+        players = self.config.players
+        number = number_of_player(self._robot, players)
+        movers = obstacles.movers(model, self.config.limits.latency_s, number, players)
         now_m_s = Point(self._before.vx_m_s, self._before.vy_m_s)
         velocity = safe_velocity(
             Point(wanted.vx_m_s, wanted.vy_m_s), now_m_s, place, movers, APART_M, self.config.limits.acceleration_m_s2

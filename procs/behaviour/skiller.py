@@ -12,12 +12,14 @@ from lcmtypes.soccer import (
     world_model_t,
 )
 from procs.behaviour.game import Whose, frame_of, game_of
+from procs.behaviour.identity import team_of_player
 from procs.behaviour.skills.book import SKILLS, Machine
 from procs.behaviour.skills.skill import Blind, Drive, Obstacle, Scene, Sight, Status, Step
 from procs.behaviour.view import view_of
 from procs.model.field import Field, Point
 from procs.model.geometry import plausible
-from procs.referee.ends import team_number
+from procs.model.robot import PLAYERS, Players
+from procs.referee.ends import Team
 
 _KICK_TIMEOUT_S = 0.15
 """A kick without an answer by then has failed."""
@@ -30,6 +32,8 @@ class SkillerConfig(Config):
 
     field: Field = Field()
     """Measures of the field."""
+    players: Players = dict(PLAYERS)
+    """Team and number of each robot."""
 
 
 class Skiller(Component):
@@ -58,11 +62,14 @@ class Skiller(Component):
 
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
-        self._team = team_number(self._robot)
         self._frame = frame_of(self.game_state.value, self._team)
         self._machine = Machine()
         self._request: Request[skill_command_t] | None = None
         self._kick: Call | None = None
+
+    @property
+    def _team(self) -> Team:
+        return team_of_player(self._robot, self.config.players)
 
     def loop(self) -> None:
         self._frame = frame_of(self.game_state.value, self._team)
@@ -100,7 +107,7 @@ class Skiller(Component):
         command = self._request.value if self._request else skill_command_t()
         kicker = self.kicker_state.value
         game = game_of(self.game_state.value, self._team, self._frame)
-        view = view_of(self.world_model.value, self._robot, "", self._frame)
+        view = view_of(self.world_model.value, self._robot, "", self._frame, players=self.config.players)
         return Scene(
             view,
             self._frame.point(command.x_m, command.y_m),

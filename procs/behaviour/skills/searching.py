@@ -7,7 +7,7 @@ from procs.behaviour.skills.states import Exit, State, StateMachine
 from procs.behaviour.view import View
 from procs.model.field import Field, Point
 from procs.model.geometry import bearing_rad
-from procs.model.robot import RADIUS_M, number_of
+from procs.model.robot import RADIUS_M
 
 _STAND_S = 1.5  # a standing camera sees best, and most robots find their place at once
 _TURN_RAD_S, _TURN_S = 0.8, 4.0
@@ -134,7 +134,7 @@ def vantage_points(view: View, field: Field) -> list[Point]:
     The field players that know their places divide the points among them by their numbers, from the own goal on.
     """
     searching = [view.own, *(mate for mate in view.mates if mate.role not in _IDLE)]
-    searching.sort(key=lambda robot: (number_of(robot.name), robot.name))
+    searching.sort(key=lambda robot: (robot.number, robot.name))
     rank, n_robots, n_points = searching.index(view.own), len(searching), len(_VANTAGE)
     first, end = rank * n_points // n_robots, (rank + 1) * n_points // n_robots
     shares = _VANTAGE[first : max(end, first + 1)]
