@@ -8,13 +8,15 @@ from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import game_state_t, pass_agreement_t, role_t, skill_command_t, world_model_t
 from procs.behaviour import greedy, roles
 from procs.behaviour.game import Game, frame_of, game_of
+from procs.behaviour.identity import team_of_player
 from procs.behaviour.order import Order
 from procs.behaviour.skills.book import SKILLS
 from procs.behaviour.tactics import Tactics, leave_field
 from procs.behaviour.view import View, view_of
 from procs.model.field import Field, Point
 from procs.model.geometry import wrap_rad
-from procs.referee.ends import team_number
+from procs.model.robot import PLAYERS, Players
+from procs.referee.ends import Team
 
 _EXPIRES_S = 1.0
 """Logical time within which the skiller has to begin a command."""
@@ -25,6 +27,8 @@ class AgentConfig(Config):
 
     field: Field = Field()
     """Measures of the field."""
+    players: Players = dict(PLAYERS)
+    """Team and number of each robot."""
     strategy: Literal["team", "greedy"] = "team"
     """`team`: roles, passes and formations; `greedy`: the simple opponent, which chases the ball."""
     new_target_m: float = 0.05
@@ -49,10 +53,13 @@ class Agent(Component):
 
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
-        self._team = team_number(self._robot)
         self._frame = frame_of(self.game_state.value, self._team)
         self._tactics = Tactics(self.config.field)
         self._call: Call | None = None
+
+    @property
+    def _team(self) -> Team:
+        return team_of_player(self._robot, self.config.players)
 
     def loop(self) -> None:
         role, frame = self.role.value, frame_of(self.game_state.value, self._team)
@@ -62,7 +69,8 @@ class Agent(Component):
         if role.role == roles.ABSENT and self._robot not in game.sent_off:
             role.role = roles.DEFENDER
         model, said = self.world_model.value, self._tactics.passing.said
-        view = view_of(model, self._robot, role.role, frame, agreement=said).without(game.sent_off)
+        view = view_of(model, self._robot, role.role, frame, agreement=said, players=self.config.players)
+        view = view.without(game.sent_off)
         role.role, order = self._decide(view, game)
         self._tell_pass(role.agreement)
         role.intention = order.intention or order.skill

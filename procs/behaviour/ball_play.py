@@ -76,7 +76,7 @@ class BallPlay:
         """Returns the order in free play."""
         kept = self._keep(view) if self._kick_s < _COMMITTED_S else None
         order = kept or self._choose(view)
-        kicks = order is not None and order.skill in ("shoot", "lob", "pass", "push")
+        kicks = order is not None and order.skill in ("shoot", "lob", "pass", "push", "clear")
         if kicks and not kept:
             self._kick_s = 0.0
         self._kick = order if kicks else None
@@ -231,7 +231,7 @@ class BallPlay:
             return min(0.3, free_rad) - aim.TURN_1_RAD * turn_rad + _UPFIELD_1_M * self._upfield_m(ball, way_rad)
 
         way_rad = max(_CLEARING_RAD, key=worth)
-        return Order("shoot", ahead(ball, way_rad, _AIMED_M), way_rad, "clear")
+        return Order("clear", ahead(ball, way_rad, _AIMED_M), way_rad, "clear")
 
     def _upfield_m(self, ball: Point, way_rad: float) -> float:
         """Returns how much ground a clearance gains before it leaves the field over a touch line, at most 10 m."""

@@ -9,7 +9,6 @@ from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, PASSER
 from procs.behaviour.view import View
 from procs.model.field import Field, Point
 from procs.model.geometry import bearing_rad
-from procs.model.robot import number_of
 
 _KEEPER = 1
 _TAKER = 2
@@ -28,7 +27,7 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
     goes for it and shoots; the others line up behind the ball. A taker shoots from where it is, and leaves the ball
     alone until another robot is at it, if it has mates.
     """
-    number, ball = number_of(view.own.name), view.ball.place
+    number, ball = view.own.number, view.ball.place
     if game.paused or not view.localized:
         return DEFENDER, Order("stop", intention="pause" if game.paused else "lost")
     if number == _KEEPER:
@@ -56,7 +55,7 @@ def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Fie
     goal = field.goal_centre(1.0)
     goal_rad = bearing_rad(game.spot, goal)
     if not takes:
-        place = Point(game.spot.x_m - _BEHIND_M * number_of(view.own.name), 0.5 * game.spot.y_m)
+        place = Point(game.spot.x_m - _BEHIND_M * view.own.number, 0.5 * game.spot.y_m)
         step = formation.next_step(view.own.place, formation.allowed(place, game, field), game, field, view.others)
         return DEFENDER, Order("goto", step, bearing_rad(step, game.spot), "keep distance")
     if game.stopped:

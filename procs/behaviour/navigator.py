@@ -6,14 +6,15 @@ from fwk import Clock, Component, Config, Reads, Writes
 from lcmtypes.robot import kicker_state_t, motor_command_t, odometry_t
 from lcmtypes.soccer import drive_target_t, navigator_state_t, world_model_t
 from procs.behaviour import motion, obstacles
+from procs.behaviour.identity import number_of_player
 from procs.behaviour.motion import STANDSTILL, Limits, Pose, Velocity
 from procs.behaviour.obstacles import APART_M
 from procs.behaviour.path import Way, find_way
 from procs.behaviour.velocity_obstacles import safe_velocity
 from procs.model.ball import BALL
 from procs.model.field import Field, Point
-from procs.model.geometry import plausible, wrap_rad
-from procs.model.robot import ROBOT, number_of
+from procs.model.geometry import clamp, plausible, wrap_rad
+from procs.model.robot import PLAYERS, ROBOT, Players
 
 _FORWARD = 0.8  # cosine of the largest angle between a change of velocity towards the ball and the heading
 
@@ -25,6 +26,8 @@ class NavigatorConfig(Config):
     """Limits of the robot's motion."""
     field: Field = Field()
     """Measures of the field."""
+    players: Players = dict(PLAYERS)
+    """Team and number of each robot."""
     target_timeout_s: float = 0.5
     """The robot stops when its target or its world model is older."""
     near_m: float = 0.08
@@ -34,13 +37,17 @@ class NavigatorConfig(Config):
 
 
 class Navigator(Component):
-    """Turns a target in the world frame into a velocity in the robot frame."""
+    """Turns a target in the world frame into a velocity in the robot frame.
+
+    A robot that does not know its place obeys `blind_drive`, a velocity in the robot frame, and else stands.
+    """
 
     stage = "act"
 
     config: NavigatorConfig
     clock: Clock
     drive_target: Reads[drive_target_t]
+    blind_drive: Reads[motor_command_t]
     world_model: Reads[world_model_t]
     odometry: Reads[odometry_t]
     kicker_state: Reads[kicker_state_t]
@@ -48,18 +55,23 @@ class Navigator(Component):
     navigator_state: Writes[navigator_state_t]
 
     def init(self) -> None:
-        self._number = number_of(self.name.rpartition("/")[0])
+        self._robot = self.name.rpartition("/")[0]
         self._before = STANDSTILL  # commanded, world frame
         self._direction_rad: float | None = None
+        self._blind = False  # the commanded velocity is in the robot frame
 
     def loop(self) -> None:
         target, model, state = self.drive_target.value, self.world_model.value, self.navigator_state.value
         state.target_id = target.target_id
         state.error = navigator_state_t.OK
+        if self._blind and model.localized:
+            vx_m_s, vy_m_s = motion.turned(self._before.vx_m_s, self._before.vy_m_s, model.heading_rad)
+            self._before, self._blind = Velocity(vx_m_s, vy_m_s, self._before.omega_rad_s), False
         here = plausible(model.x_m, model.y_m, model.heading_rad)
         if not here or not model.localized or not self._fresh(self.world_model):
             state.error, state.arrived, state.distance_m = navigator_state_t.LOST, False, 0.0
-            self._stop(model.heading_rad if here else 0.0)
+            if not self._drive_blind():
+                self._stop(model.heading_rad if here and not self._blind else 0.0)
         elif target.stop or not self._fresh(self.drive_target) or not _makes_sense(target):
             state.arrived, state.distance_m = target.stop, 0.0
             self._stop(model.heading_rad)
@@ -72,12 +84,25 @@ class Navigator(Component):
         self.motor_command.value = motor_command_t()
         self.motor_command.write()
 
-    def _fresh(self, reader: Reads[drive_target_t] | Reads[world_model_t]) -> bool:
+    def _fresh(self, reader: Reads[drive_target_t] | Reads[world_model_t] | Reads[motor_command_t]) -> bool:
         return reader.has_value and self.clock.since_s(reader.header.time_us) <= self.config.target_timeout_s
 
     def _stop(self, heading_rad: float) -> None:
         self._direction_rad = None
         self._command(STANDSTILL, heading_rad)
+
+    def _drive_blind(self) -> bool:
+        """Drives as commanded in the robot frame; returns whether there is such a command."""
+        blind, limits = self.blind_drive.value, self.config.limits
+        sound = plausible(blind.vx_m_s, blind.vy_m_s, blind.omega_rad_s)
+        if not (blind.enabled and sound and self._fresh(self.blind_drive)):
+            return False
+        self._direction_rad, self._blind = None, True
+        speed_m_s = math.hypot(blind.vx_m_s, blind.vy_m_s)
+        share = min(1.0, limits.speed_m_s / speed_m_s) if speed_m_s else 1.0
+        omega_rad_s = clamp(blind.omega_rad_s, -limits.omega_rad_s, limits.omega_rad_s)
+        self._command(Velocity(share * blind.vx_m_s, share * blind.vy_m_s, omega_rad_s), 0.0)
+        return True
 
     def _drive(self, target: drive_target_t, model: world_model_t) -> None:
         config, state = self.config, self.navigator_state.value
@@ -100,7 +125,9 @@ class Navigator(Component):
         return obstacles.inside_walls(place, self.config.field)
 
     def _give_way(self, wanted: Velocity, place: Point, model: world_model_t) -> Velocity:
-        movers = obstacles.movers(model, self.config.limits.latency_s, self._number)
+        players = self.config.players
+        number = number_of_player(self._robot, players)
+        movers = obstacles.movers(model, self.config.limits.latency_s, number, players)
         now_m_s = Point(self._before.vx_m_s, self._before.vy_m_s)
         velocity = safe_velocity(
             Point(wanted.vx_m_s, wanted.vy_m_s), now_m_s, place, movers, APART_M, self.config.limits.acceleration_m_s2

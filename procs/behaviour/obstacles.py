@@ -1,15 +1,16 @@
 """Areas that the robot's middle avoids: other robots, goal posts, and on demand the ball; world frame."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from lcmtypes.soccer import robot_estimate_t, world_model_t
+from procs.behaviour.identity import number_of_estimate
 from procs.behaviour.path import Disc
 from procs.behaviour.velocity_obstacles import Mover
 from procs.model.ball import BALL
 from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import clamp, plausible
-from procs.model.robot import ROBOT, number_of
+from procs.model.robot import PLAYERS, ROBOT, Player
 
 _ROBOT_M = ROBOT.radius_m
 _BALL_M = BALL.radius_m
@@ -55,7 +56,9 @@ def inside_walls(place: Point, field: Field) -> bool:
     return abs(place.x_m) < x_m + _AT_WALL_M and abs(place.y_m) < y_m + _AT_WALL_M
 
 
-def movers(model: world_model_t, latency_s: float, own_number: int = 0) -> list[Mover]:
+def movers(
+    model: world_model_t, latency_s: float, own_number: int = 0, players: Mapping[str, Player] = PLAYERS
+) -> list[Mover]:
     """Returns the other robots where they will be when the robot begins to follow its next command.
 
     Of two mates the one with the higher number gives way.
@@ -64,7 +67,8 @@ def movers(model: world_model_t, latency_s: float, own_number: int = 0) -> list[
         Mover(
             Point(robot.x_m + robot.vx_m_s * latency_s, robot.y_m + robot.vy_m_s * latency_s),
             Point(robot.vx_m_s, robot.vy_m_s),
-            gives_way=number_of(robot.name) > own_number and math.hypot(robot.vx_m_s, robot.vy_m_s) > _DRIVES_M_S,
+            gives_way=number_of_estimate(robot, players) > own_number
+            and math.hypot(robot.vx_m_s, robot.vy_m_s) > _DRIVES_M_S,
             margin_m=_PASSING_M + _deviation_m(robot),
         )
         for robot in (*model.mates, *model.opponents)

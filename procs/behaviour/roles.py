@@ -10,7 +10,6 @@ from procs.behaviour.formation import places
 from procs.behaviour.passing import taken
 from procs.behaviour.view import Ball, Robot, View
 from procs.model.field import Field, Point
-from procs.model.robot import number_of
 
 GOALKEEPER, ATTACKER, SUPPORTER, DEFENDER = "goalkeeper", "attacker", "supporter", "defender"
 PASSER = "passer"
@@ -45,7 +44,7 @@ def assign(view: View, field: Field) -> dict[str, Job]:
     team = sorted((robot for robot in present if robot.role != ABSENT), key=lambda robot: robot.name)
     jobs: dict[str, Job] = {}
     if len(team) > 1:
-        keeper = min(team, key=lambda robot: (number_of(robot.name), robot.name))
+        keeper = min(team, key=lambda robot: (robot.number, robot.name))
         jobs[keeper.name] = Job(GOALKEEPER, field.goal_centre(-1.0))
         team.remove(keeper)
     if not team:

@@ -1,18 +1,30 @@
 """Carries out skills as commands: where to drive, when to handle the ball and when to kick."""
 
 from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Request, RequestState, Serves, Writes, channel
-from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_state_t
-from lcmtypes.soccer import drive_target_t, game_state_t, skill_command_t, skill_status_t, world_model_t
+from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_state_t, motor_command_t
+from lcmtypes.soccer import (
+    drive_target_t,
+    game_state_t,
+    line_points_t,
+    obstacle_percepts_t,
+    skill_command_t,
+    skill_status_t,
+    world_model_t,
+)
 from procs.behaviour.game import Whose, frame_of, game_of
+from procs.behaviour.identity import team_of_player
 from procs.behaviour.skills.book import SKILLS, Machine
-from procs.behaviour.skills.skill import Drive, Scene, Status, Step
+from procs.behaviour.skills.skill import Blind, Drive, Obstacle, Scene, Sight, Status, Step
 from procs.behaviour.view import view_of
-from procs.model.field import Field
+from procs.model.field import Field, Point
 from procs.model.geometry import plausible
-from procs.referee.ends import team_number
+from procs.model.robot import PLAYERS, Players
+from procs.referee.ends import Team
 
 _KICK_TIMEOUT_S = 0.15
 """A kick without an answer by then has failed."""
+_SEEN_S = 0.5
+"""Older percepts do not count."""
 
 
 class SkillerConfig(Config):
@@ -20,6 +32,8 @@ class SkillerConfig(Config):
 
     field: Field = Field()
     """Measures of the field."""
+    players: Players = dict(PLAYERS)
+    """Team and number of each robot."""
 
 
 class Skiller(Component):
@@ -38,18 +52,24 @@ class Skiller(Component):
     world_model: Reads[world_model_t]
     kicker_state: Reads[kicker_state_t]
     game_state: Reads[game_state_t] = channel("world/game_state")
+    obstacle_percepts: Reads[obstacle_percepts_t]
+    line_points: Reads[line_points_t]
     skill_status: Writes[skill_status_t]
     drive_target: Writes[drive_target_t]
+    blind_drive: Writes[motor_command_t]
     kick: Calls[kick_command_t]
     dribble_command: Writes[dribble_command_t]
 
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
-        self._team = team_number(self._robot)
         self._frame = frame_of(self.game_state.value, self._team)
         self._machine = Machine()
         self._request: Request[skill_command_t] | None = None
         self._kick: Call | None = None
+
+    @property
+    def _team(self) -> Team:
+        return team_of_player(self._robot, self.config.players)
 
     def loop(self) -> None:
         self._frame = frame_of(self.game_state.value, self._team)
@@ -59,6 +79,7 @@ class Skiller(Component):
         self._answer(step)
         self._report(step)
         self._drive(step.drive)
+        self._drive_blind(step.blind)
         self._handle(step.dribble)
         if step.kick_m_s > 0:
             self.kick.value.speed_m_s, self.kick.value.elevation_rad = step.kick_m_s, step.elevation_rad
@@ -67,6 +88,7 @@ class Skiller(Component):
     def finalize(self) -> None:
         """Leaves the robot without a target and the ball handling off."""
         self._drive(None)
+        self._drive_blind(None)
         self._handle(on=False)
 
     def _begin(self, request: Request[skill_command_t]) -> None:
@@ -85,8 +107,9 @@ class Skiller(Component):
         command = self._request.value if self._request else skill_command_t()
         kicker = self.kicker_state.value
         game = game_of(self.game_state.value, self._team, self._frame)
+        view = view_of(self.world_model.value, self._robot, "", self._frame, players=self.config.players)
         return Scene(
-            view_of(self.world_model.value, self._robot, "", self._frame),
+            view,
             self._frame.point(command.x_m, command.y_m),
             self._frame.heading_rad(command.heading_rad),
             command.speed_m_s,
@@ -96,6 +119,23 @@ class Skiller(Component):
             set_piece=game.whose is Whose.OURS and not game.free_play,
             duration_s=self.clock.period_s,
             field=self.config.field,
+            game=game,
+            sight=None if view.localized else self._sight(),
+        )
+
+    def _sight(self) -> Sight | None:
+        """Returns what a robot that does not know its place sees."""
+        for percept in (self.obstacle_percepts, self.line_points):
+            if not percept.has_value or self.clock.since_s(percept.header.time_us) > _SEEN_S:
+                return None
+        obstacles, lines = self.obstacle_percepts.value.obstacles, self.line_points.value
+        return Sight(
+            tuple(
+                Obstacle(Point(each.x_m, each.y_m), each.radius_m)
+                for each in obstacles
+                if plausible(each.x_m, each.y_m, each.radius_m)
+            ),
+            tuple(Point(x_m, y_m) for x_m, y_m in zip(lines.x_m, lines.y_m, strict=True) if plausible(x_m, y_m)),
         )
 
     def _answer(self, step: Step) -> None:
@@ -128,6 +168,15 @@ class Skiller(Component):
         if (target.stop, target.x_m, target.y_m, target.heading_rad) != before:
             target.target_id += 1
         self.drive_target.write()
+
+    def _drive_blind(self, blind: Blind | None) -> None:
+        """Sends the velocity of a robot that does not know its place, and once that there is none any more."""
+        command = self.blind_drive.value
+        if blind is None and not command.enabled:
+            return
+        command.enabled = blind is not None
+        command.vx_m_s, command.omega_rad_s = blind or (0.0, 0.0)
+        self.blind_drive.write()
 
     def _handle(self, on: bool) -> None:
         self.dribble_command.value.on = on

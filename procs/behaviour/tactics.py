@@ -8,6 +8,7 @@ from procs.behaviour.game import Game, Whose
 from procs.behaviour.order import Order
 from procs.behaviour.passing import Passing
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER, Job
+from procs.behaviour.skills.getting import comes_fast
 from procs.behaviour.skills.keeping import BEFORE_LINE_M
 from procs.behaviour.view import Robot, View
 from procs.model.field import Field, Point
@@ -81,7 +82,7 @@ class Tactics:
         before, self._last = self._last, self._order(view, game, job, holds_ball)
         stops = game.stopped and not self._taking
         lost = not holds_ball and before.skill in _WITH_BALL
-        if stops or lost or self._last.skill in ("shoot", "lob", "push"):
+        if stops or lost or self._last.skill in ("shoot", "lob", "push", "clear"):
             self.passing.announce("")
         return self._last
 
@@ -96,7 +97,7 @@ class Tactics:
         """Returns for how long the robot leaves the ball alone after a set piece that it has taken."""
         if game.stopped or not view.mates or holds_ball:
             return 0.0
-        if self._taking and self._last.skill in ("pass", "shoot", "lob"):
+        if self._taking and self._last.skill in ("pass", "shoot", "lob", "clear"):
             return _BARRED_S  # it held the ball in the last tick and does not any more
         if not game.free_play and self._fumbled(view) and self._taking:
             return _BARRED_S
@@ -110,14 +111,16 @@ class Tactics:
         return gone and near and not self._moved
 
     def _order(self, view: View, game: Game, job: Job, holds_ball: bool) -> Order:
-        if game.paused or not view.localized:
-            return Order("stop", intention="pause" if game.paused else "lost")
+        if game.paused:
+            return Order("stop", intention="pause")
+        if not view.localized:
+            return Order("search", intention="lost")
         if job.role == GOALKEEPER:
             return self._keep(view, game, holds_ball)
         if not game.free_play:
             return self._set_piece(view, game, job, holds_ball)
         if not view.ball.known:
-            return self._stand(view, job.place, "search")
+            return Order("search", job.place, intention="search")
         if holds_ball:
             return self._play_ball(view)
         if job.role == ATTACKER and not keeper_takes(view, self.field):
@@ -138,8 +141,7 @@ class Tactics:
             place = self._helper_place(view, game, job)
             return self._stand(view, self._next_step(view, place, game), "take position")
         if game.whose is not Whose.OURS:
-            place = formation.first_opponent_place(game, self.field)
-            return self._stand(view, self._next_step(view, place, game), "keep distance")
+            return Order("block", game.spot, intention="keep distance")
         if self.passing.said.passer:  # the ball is on its way, but not yet in play
             return self._go_for_ball(view)
         taker = Robot(view.own.name, game.spot, view.own.heading_rad)
@@ -216,18 +218,15 @@ class Tactics:
     def _go_for_ball(self, view: View) -> Order:
         ball = view.ball
         goal_rad = bearing_rad(ball.place, self.field.goal_centre(1.0))
-        towards = ball.velocity_m_s.x_m * (view.own.place.x_m - ball.place.x_m) + ball.velocity_m_s.y_m * (
-            view.own.place.y_m - ball.place.y_m
-        )
-        distance_m = math.dist(view.own.place, ball.place)
         rolls_free = all(math.dist(other.place, ball.place) > _HELD_M for other in view.opponents)
-        if rolls_free and ball.speed_m_s > _FAST_BALL_M_S and towards > 0.7 * ball.speed_m_s * distance_m:
-            return Order("intercept", ball.place, goal_rad, "intercept")
+        if rolls_free and comes_fast(ball, view.own):
+            passed = bool(self.passing.said.passer)
+            return Order("receive" if passed else "intercept", ball.place, goal_rad, "intercept")
         return Order("get_ball", ball.place, goal_rad, "get ball")
 
     def _help(self, view: View, game: Game, job: Job) -> Order:
         if self.passing.said.passer:
-            return self._stand(view, view.own.place, "await pass")
+            return Order("receive", view.own.place, bearing_rad(view.own.place, view.ball.place), "await pass")
         if job.role == DEFENDER:
             runner = _free_opponent(view, self.field)
             if runner and _nearest_defender(view, runner, _MARK_M):

@@ -5,12 +5,14 @@ both teams run the same code and play alike.
 """
 
 import math
-from collections.abc import Container, Iterable
+from collections.abc import Container, Iterable, Mapping
 from typing import NamedTuple
 
 from lcmtypes.soccer import ball_estimate_t, pass_agreement_t, robot_estimate_t, world_model_t
+from procs.behaviour.identity import number_of_estimate, number_of_player
 from procs.model.field import Point
 from procs.model.geometry import plausible, wrap_rad
+from procs.model.robot import PLAYERS, Player
 
 
 class Frame(NamedTuple):
@@ -51,6 +53,8 @@ class Robot(NamedTuple):
     velocity_m_s: Point = Point(0.0, 0.0)
     role: str = ""
     agreement: Agreement = _SILENT
+    number: int = 0
+    """On its back, for team mates and itself."""
 
 
 class Ball(NamedTuple):
@@ -96,23 +100,24 @@ def view_of(
     frame: Frame,
     mate_timeout_s: float = 2.0,
     agreement: Agreement = _SILENT,
+    players: Mapping[str, Player] = PLAYERS,
 ) -> View:
     """Turns the world model into the attack frame; `role` and `agreement` are the robot's own words.
 
     Mates that were silent for the time-out are left out, and so are robots with implausible values.
     """
     here = plausible(model.x_m, model.y_m, model.heading_rad, model.vx_m_s, model.vy_m_s)
-    own = Robot(name, Point(0.0, 0.0), role=role, agreement=agreement)
+    own = Robot(name, Point(0.0, 0.0), role=role, agreement=agreement, number=number_of_player(name, players))
     if here:
         place, velocity_m_s = frame.point(model.x_m, model.y_m), frame.point(model.vx_m_s, model.vy_m_s)
-        own = Robot(name, place, frame.heading_rad(model.heading_rad), velocity_m_s, role, agreement)
+        own = own._replace(place=place, heading_rad=frame.heading_rad(model.heading_rad), velocity_m_s=velocity_m_s)
     mates = zip(model.mates, model.mate_roles, model.mate_agreements, strict=True)
     return View(
         here and model.localized,
         own,
         _ball(model.ball, frame),
         tuple(
-            _robot(mate, said, agreed, frame)
+            _robot(mate, said, agreed, frame)._replace(number=number_of_estimate(mate, players))
             for mate, said, agreed in mates
             if mate.age_s <= mate_timeout_s and _sane(mate)
         ),

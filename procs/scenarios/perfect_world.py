@@ -3,7 +3,16 @@
 import numpy as np
 
 from fwk import Clock, Component, Config, Each, Reads, Writes, channel
-from lcmtypes.soccer import ball_estimate_t, ground_truth_t, robot_estimate_t, role_t, true_robot_t, world_model_t
+from lcmtypes.soccer import (
+    ball_estimate_t,
+    ground_truth_t,
+    line_points_t,
+    obstacle_percepts_t,
+    robot_estimate_t,
+    role_t,
+    true_robot_t,
+    world_model_t,
+)
 from procs.behaviour.roles import ABSENT
 from procs.model.robot import team_in
 
@@ -31,6 +40,9 @@ class PerfectWorldModel(Component):
     ground_truth: Reads[ground_truth_t] = channel("world/ground_truth")
     role: Each[Reads[role_t]] = channel("*/role")
     world_model: Writes[world_model_t]
+    obstacle_percepts: Writes[obstacle_percepts_t]
+    """Never written, like `line_points`: only robots that do not know their places need them."""
+    line_points: Writes[line_points_t]
 
     def loop(self) -> None:
         robot, truth, config = self.name.rpartition("/")[0], self.ground_truth.value, self.config

@@ -14,14 +14,19 @@ from procs.behaviour.navigator import Navigator
 from procs.behaviour.skiller import Skiller
 from procs.drivers.base import Base
 from procs.drivers.kicker import Kicker
+from procs.localization.localization import Localization
 from procs.model.realism import Realism
+from procs.model.robot import team_of
 from procs.referee.referee import Referee, RefereeConfig
 from procs.scenarios.crew import Action, Crew
 from procs.scenarios.dummy import Dummy
 from procs.scenarios.mistakes import field_mistakes, robot_mistakes, settings_mistakes, texts_of
 from procs.scenarios.perfect_world import PerfectWorldModel
 from procs.scenarios.words import WORDS
+from procs.simulation.percepts import Percepts
+from procs.simulation.radio import Radio
 from procs.simulation.simulator import Simulator
+from procs.world_model.world_model import WorldModel
 
 BOOK = Path(__file__).parent / "book"
 """Folder of the scenarios that come with the robots."""
@@ -35,6 +40,14 @@ _ROBOT: dict[str, type[Component]] = {
     "skiller": Skiller,
     "navigator": Navigator,
 }
+_SEEING: dict[str, type[Component]] = {
+    **_ROBOT,
+    "percepts": Percepts,
+    "localization": Localization,
+    "world_model": WorldModel,
+}
+_MIRROR = {"size_px": 360, "view_angle_deg": 86.0}  # as in msl-percepts.yaml
+_RADIO = {"messages": "{team}*/team_message", "inboxes": "{team}*/team_inbox"}
 
 
 class ScenarioError(ValueError):
@@ -42,10 +55,12 @@ class ScenarioError(ValueError):
 
 
 class Scenario(Expectations):
-    """A scenario as its file states it. Robots know the world up to the noise of their settings."""
+    """A scenario as its file states it. Its `robots` know the world up to the noise of their settings."""
 
     robots: list[str] = []
     """Robots with all their components but perception."""
+    seeing: list[str] = []
+    """Robots with all their components; their percepts are drawn from the truth, with errors."""
     dummies: list[str] = []
     """Robots that stand still."""
     places: dict[str, tuple[float, float, float]] = {}
@@ -89,7 +104,7 @@ def read(path: Path) -> Scenario:
 
 
 def _mistakes(scenario: Scenario) -> list[str]:
-    found = list(robot_mistakes(scenario.robots, scenario.dummies, scenario.places))
+    found = list(robot_mistakes(scenario.robots + scenario.seeing, scenario.dummies, scenario.places))
     found += [f"ball: {each}" for each in field_mistakes(scenario.ball, place_ball_t())]
     configs = {name: _config(kind) for name, kind in _components(scenario).items()}
     try:
@@ -110,6 +125,8 @@ def _config(kind: type[Component]) -> type[Config] | None:
 def _components(scenario: Scenario) -> dict[str, type[Component]]:
     components: dict[str, type[Component]] = {"world/simulator": Simulator, "world/referee": Referee, CREW: Crew}
     components |= {f"{robot}/{name}": part for robot in scenario.robots for name, part in _ROBOT.items()}
+    components |= {f"{robot}/{name}": part for robot in scenario.seeing for name, part in _SEEING.items()}
+    components |= {f"team_{team}/radio": Radio for team in sorted(set(map(team_of, scenario.seeing)))}
     return components | {f"{robot}/dummy": Dummy for robot in scenario.dummies}
 
 
@@ -124,9 +141,18 @@ def system_of(scenario: Scenario) -> MemorySystem:
         "world/referee": rules,
         CREW: {"actions": [action.model_dump(exclude_none=True) for action in actions]},
     }
+    components = _components(scenario)
+    channels, turns = {}, {}
+    for name, part in components.items():
+        if part is Percepts:
+            settings[name], turns[name] = {"realism": scenario.realism, "mirror": _MIRROR}, (2, 0)
+        if part is Radio:
+            team = name.removeprefix("team_").removesuffix("/radio")
+            settings[name] = {"realism": scenario.realism}
+            channels[name] = {port: channel.format(team=team) for port, channel in _RADIO.items()}
     for component, more in scenario.settings.items():
         settings[component] = settings.get(component, {}) | more
-    return MemorySystem(_components(scenario), settings=settings, seed=scenario.seed)
+    return MemorySystem(components, settings, channels, scenario.seed, turns=turns)
 
 
 def run(path: Path) -> Verdict:

@@ -1,14 +1,16 @@
 """All skills by the names that agents use, and the machine that runs one at a time."""
 
-from procs.behaviour.skills.getting import GetBall, Intercept
+from procs.behaviour.skills.getting import GetBall, Intercept, Receive
 from procs.behaviour.skills.keeping import KeepGoal, KeepLine
-from procs.behaviour.skills.moving import Goto, Mark, Stop
-from procs.behaviour.skills.playing import Aim, Dribble, Lob, Pass, Push, Shoot
+from procs.behaviour.skills.moving import Block, Goto, Mark, Stop
+from procs.behaviour.skills.playing import Aim, Clear, Dribble, Lob, Pass, Push, Shoot
+from procs.behaviour.skills.searching import Search
 from procs.behaviour.skills.skill import Scene, Status, Step
 from procs.behaviour.skills.states import StateMachine
 
 SKILLS: dict[str, type[StateMachine]] = {
     "stop": Stop,
+    "search": Search,
     "goto": Goto,
     "get_ball": GetBall,
     "dribble": Dribble,
@@ -17,10 +19,13 @@ SKILLS: dict[str, type[StateMachine]] = {
     "lob": Lob,
     "pass": Pass,
     "push": Push,
+    "clear": Clear,
     "intercept": Intercept,
+    "receive": Receive,
     "keep_goal": KeepGoal,
     "keep_line": KeepLine,
     "mark": Mark,
+    "block": Block,
 }
 
 

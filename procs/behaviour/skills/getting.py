@@ -1,4 +1,4 @@
-"""Skills that win the ball: get_ball drives to it, intercept waits on its way."""
+"""Skills that win the ball: get_ball drives to it, intercept waits on its way, receive expects an announced pass."""
 
 import math
 
@@ -6,6 +6,7 @@ from procs.behaviour import ballistics
 from procs.behaviour.interception import Interception, Stand
 from procs.behaviour.skills.skill import Drive, Scene, Status, Step
 from procs.behaviour.skills.states import Exit, State, StateMachine, otherwise
+from procs.behaviour.view import Ball, Robot
 from procs.model.ball import BALL
 from procs.model.field import Point
 from procs.model.geometry import ahead, bearing_rad, wrap_rad
@@ -28,6 +29,9 @@ _HELD_M = 0.5  # an opponent this near to the ball has it
 _KEPT_M_S = 3.6  # a faster ball bounces off a standing mouth; the robot gives before it ...
 _GIVING_S, _GIVING_M, _GIVING_M_S = 0.5, 0.4, 0.7  # ... from so long before its arrival, so far and so fast
 _ON_LINE_M = 0.3
+_PASSED_M_S = 1.2  # a pass is at least so fast ...
+_TOWARDS = 0.7  # ... and comes towards the robot: cosine of the angle
+_WITH_MATE_M = 0.42  # the passer has a ball so near to it
 _SURE_S = 0.1  # the light barrier must see the ball so long
 
 
@@ -170,6 +174,48 @@ class Intercept(_Capture):
         ),
         *_Capture._ENDS,
     )
+
+
+class Receive(_Capture):
+    """Stands and looks at the passer until the announced pass comes; then takes the ball as intercept does."""
+
+    def _pass_comes(self, scene: Scene) -> bool:
+        view = scene.view
+        return comes_fast(view.ball, view.own) and not view.ball.is_near(view.mates, _WITH_MATE_M)
+
+    def _nothing_to_see(self, scene: Scene) -> bool:
+        return not scene.view.ball.known and _passer(scene) is None
+
+    def _await(self, scene: Scene) -> Step:
+        own, passer = scene.view.own, _passer(scene)
+        seen = passer.place if passer and not scene.view.ball.known else scene.view.ball.place
+        return Step(Drive(own.place, bearing_rad(own.place, seen), scene.speed_m_s, avoid_ball=True))
+
+    STATES = (
+        State(
+            "await",
+            _await,
+            (
+                Exit(_Capture._in_mouth, "settle"),
+                Exit(_pass_comes, "approach"),
+                Exit(_nothing_to_see, "the ball is unknown"),
+            ),
+        ),
+        *Intercept.STATES,
+    )
+
+
+def comes_fast(ball: Ball, robot: Robot) -> bool:
+    """Returns whether the ball rolls fast, and towards the robot."""
+    to_x_m, to_y_m = robot.place.x_m - ball.place.x_m, robot.place.y_m - ball.place.y_m
+    towards = ball.velocity_m_s.x_m * to_x_m + ball.velocity_m_s.y_m * to_y_m
+    return ball.speed_m_s > _PASSED_M_S and towards > _TOWARDS * ball.speed_m_s * math.hypot(to_x_m, to_y_m)
+
+
+def _passer(scene: Scene) -> Robot | None:
+    """Returns the mate that announces a pass to the robot."""
+    own = scene.view.own.name
+    return next((mate for mate in scene.view.mates if mate.agreement.receiver == own), None)
 
 
 def _meeting(scene: Scene) -> Point:

@@ -1,4 +1,4 @@
-"""Skills with the ball in the mouth: dribble, shoot, lob, pass."""
+"""Skills with the ball in the mouth: dribble, aim, shoot, lob, pass, push, clear."""
 
 import math
 from abc import abstractmethod
@@ -23,6 +23,7 @@ _PULLS_RAD = 1.1  # a drive further off the mouth's direction would pull the bal
 _AIMED_RAD = 0.1
 _SHOT_M_S = 11.0
 _ARRIVAL_M_S = 2.7
+_CLEARED_RAD = 0.15  # error of a clearance
 
 
 class _WithBall(StateMachine):
@@ -224,6 +225,15 @@ class Shoot(_Kick):
 
     def _tolerance_rad(self, distance_m: float) -> float:
         return clamp(0.15 / max(distance_m, 0.1), 0.02, 0.1)
+
+
+class Clear(Shoot):
+    """Kicks hard, roughly towards the place and as soon as possible: the ball only has to go."""
+
+    _EXACT = 1.0
+
+    def _tolerance_rad(self, _distance_m: float) -> float:
+        return _CLEARED_RAD
 
 
 class Lob(Shoot):

@@ -4,6 +4,7 @@ from abc import ABC, abstractmethod
 from enum import IntEnum
 from typing import NamedTuple
 
+from procs.behaviour.game import Game
 from procs.behaviour.view import View
 from procs.model.field import Field, Point
 
@@ -15,6 +16,21 @@ class Status(IntEnum):
     FINAL = 1
     RUNNING = 2
     FAILED = 3
+
+
+class Obstacle(NamedTuple):
+    """An obstacle in the robot frame."""
+
+    place: Point
+    radius_m: float
+
+
+class Sight(NamedTuple):
+    """What the robot's own camera sees at the moment, in the robot frame: all that a lost robot knows."""
+
+    obstacles: tuple[Obstacle, ...] = ()
+    lines: tuple[Point, ...] = ()
+    """Points on white lines."""
 
 
 class Scene(NamedTuple):
@@ -35,6 +51,10 @@ class Scene(NamedTuple):
     duration_s: float = 0.05
     """Since the last scene."""
     field: Field = Field()
+    game: Game = Game()
+    """State of the game."""
+    sight: Sight | None = None
+    """None: nothing was seen lately, or the robot knows its place."""
 
 
 class Drive(NamedTuple):
@@ -48,6 +68,13 @@ class Drive(NamedTuple):
     avoid_robots: bool = True
 
 
+class Blind(NamedTuple):
+    """Velocity of a robot that does not know its place, in the robot frame."""
+
+    ahead_m_s: float
+    turn_rad_s: float
+
+
 class Step(NamedTuple):
     """Output of a skill; without a drive the robot stops."""
 
@@ -59,6 +86,8 @@ class Step(NamedTuple):
     """Of that kick; 0.0: along the ground."""
     status: Status = Status.RUNNING
     reason: str = ""
+    blind: Blind | None = None
+    """In the place of a drive while the robot does not know its place."""
 
 
 class Skill(ABC):

@@ -3,12 +3,13 @@
 from procs.behaviour.roles import Job
 from procs.behaviour.view import Agreement, Ball, Robot, View
 from procs.model.field import Field, Point
+from procs.model.robot import number_of
 
 FIELD = Field()
 
 
 def robot(name: str, x_m: float, y_m: float, heading_rad: float = 0.0, role: str = "") -> Robot:
-    return Robot(name, Point(x_m, y_m), heading_rad, role=role)
+    return Robot(name, Point(x_m, y_m), heading_rad, role=role, number=number_of(name))
 
 
 def agreed(mate: Robot, passer: str = "cyan2") -> Robot:

@@ -102,7 +102,7 @@ def test_receiver_accepts_and_waits_where_it_is() -> None:
     seen = view(NEAR, HELD, (asks(PASSER, "cyan3"),), (RIVAL,))
     order = tactics.decide(seen, PLAY, job(SUPPORTER, 5.0, 5.0), False, TICK_S)
     assert tactics.passing.said.passer == "cyan2"
-    assert (order.skill, order.place, order.intention) == ("goto", NEAR.place, "await pass")
+    assert (order.skill, order.place, order.intention) == ("receive", NEAR.place, "await pass")
 
 
 @pytest.mark.parametrize("mate", [PASSER, asks(PASSER, "cyan4")])

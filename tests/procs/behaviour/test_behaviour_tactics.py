@@ -37,9 +37,10 @@ def test_robots_stand_still_in_a_pause(state: State, role: str) -> None:
     assert decide(seen, Game(state, stopped=True), role).skill == "stop"
 
 
-def test_robot_without_a_pose_stands_still() -> None:
+@pytest.mark.parametrize(("game", "skill"), [(PLAY, "search"), (Game(State.FROZEN, stopped=True), "stop")])
+def test_robot_without_a_pose_searches_it_unless_paused(game: Game, skill: str) -> None:
     seen = view(robot("cyan2", 0.0, 0.0), ball(1.0, 0.0))._replace(localized=False)
-    assert decide(seen).skill == "stop"
+    assert decide(seen, game).skill == skill
 
 
 def test_attacker_gets_a_free_ball() -> None:
@@ -85,7 +86,7 @@ def test_robot_under_pressure_passes_to_a_free_mate_ahead() -> None:
 
 
 def test_robot_that_keeps_the_ball_too_long_clears_the_ball() -> None:
-    assert decide(with_ball(-2.0, 0.0), holds_ball=True, ticks=140)[:1] == ("shoot",)
+    assert decide(with_ball(-2.0, 0.0), holds_ball=True, ticks=140)[:1] == ("clear",)
 
 
 def test_robot_pressed_for_long_kicks_the_ball_past_its_rival() -> None:
@@ -196,7 +197,9 @@ def test_rival_that_comes_fast_presses_from_further_away() -> None:
 @pytest.mark.parametrize("stopped", [True, False])
 def test_robots_keep_away_at_the_other_teams_set_piece(stopped: bool) -> None:
     game = Game(State.FREE_KICK, stopped=stopped, whose=Whose.THEIRS, spot=Point(-3.0, 1.0))
-    for role in (ATTACKER, SUPPORTER, DEFENDER):
+    blocking = decide(view(robot("cyan2", -3.0, 0.0), ball(-3.0, 1.0)), game, ATTACKER)
+    assert (blocking.skill, blocking.place) == ("block", game.spot)
+    for role in (SUPPORTER, DEFENDER):
         order = decide(view(robot("cyan2", -3.0, 0.0), ball(-3.0, 1.0)), game, role)
         assert order.skill == "goto"
         assert math.dist(order.place, game.spot) >= 3.0
@@ -221,7 +224,7 @@ def test_keeper_keeps_goal_and_fetches_a_slow_ball_before_it() -> None:
     assert decide(view(keeper, ball(-9.5, 0.0, -4.0, 0.0), (), (far,)), role=GOALKEEPER).skill == "keep_goal"
     near = robot("", -9.0, 0.0)
     assert decide(view(keeper, ball(-9.5, 0.0), (), (near,)), role=GOALKEEPER).skill == "keep_goal"
-    assert decide(view(keeper, ball(-10.2, 0.0), (), (far,)), role=GOALKEEPER, holds_ball=True).skill == "shoot"
+    assert decide(view(keeper, ball(-10.2, 0.0), (), (far,)), role=GOALKEEPER, holds_ball=True).skill == "clear"
 
 
 def test_attacker_leaves_a_ball_that_the_keeper_takes() -> None:
@@ -244,7 +247,7 @@ def test_defender_leaves_an_opponent_to_a_nearer_mate() -> None:
 
 def test_pressed_robot_before_its_own_goal_clears_the_ball() -> None:
     beside = robot("", -6.0, 1.0)
-    assert decide(with_ball(-6.0, 0.0, beside), holds_ball=True).skill == "shoot"
+    assert decide(with_ball(-6.0, 0.0, beside), holds_ball=True).skill == "clear"
     assert decide(with_ball(-6.0, 0.0), holds_ball=True).skill == "dribble"
 
 
@@ -253,10 +256,10 @@ def test_ball_that_an_opponent_dribbles_is_not_waited_for() -> None:
     assert decide(seen).skill == "get_ball"
 
 
-def test_formation_is_taken_while_no_ball_is_seen() -> None:
+def test_unknown_ball_is_searched_from_the_place_in_the_formation() -> None:
     seen = view(robot("cyan2", 0.0, 0.0), Ball(known=False))
     order = decide(seen)
-    assert (order.skill, order.place) == ("goto", (-3.0, 1.0))
+    assert (order.skill, order.place) == ("search", (-3.0, 1.0))
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,24 @@
+"""Team and number of a robot, as the players of the match are stated in the launch file."""
+
+from collections.abc import Mapping
+
+from lcmtypes.soccer import robot_estimate_t
+from procs.model.robot import Player, number_of
+from procs.referee.ends import Team, team_number
+
+
+def team_of_player(robot: str, players: Mapping[str, Player]) -> Team:
+    """Returns the team of a robot by its namespace; one that is not among the players has that of its name."""
+    player = players.get(robot)
+    return Team[player.team.upper()] if player else team_number(robot)
+
+
+def number_of_player(robot: str, players: Mapping[str, Player]) -> int:
+    """Returns the number of a robot by its namespace; one that is not among the players has that of its name."""
+    player = players.get(robot)
+    return player.number if player else number_of(robot)
+
+
+def number_of_estimate(robot: robot_estimate_t, players: Mapping[str, Player]) -> int:
+    """Returns the number that the world model states, else that of the player; 0 for an opponent."""
+    return robot.number or number_of_player(robot.name, players)
