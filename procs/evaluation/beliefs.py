@@ -15,6 +15,7 @@ from procs.model.frames import Floats
 NEAR_M = 4.0
 """Distance from the observer to which published accuracies of ball and obstacles refer."""
 MOVING_M_S = 0.3
+_FLIES_M = 0.02
 """A ball slower than that counts as resting."""
 SETTLED_S = 0.3
 """A ball without a touch or a bounce for that time rolls freely."""
@@ -47,6 +48,7 @@ class _Ball(NamedTuple):
     holder: str
     """`itself`, `another`, or empty: the robot that touches the ball."""
     settled: bool
+    """Nothing has touched or turned the ball for a moment, and it does not fly."""
 
 
 def believed(piece: Piece) -> Samples:
@@ -135,7 +137,7 @@ def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: grou
         math.dist((own.x_m, own.y_m), (truth.ball_x_m, truth.ball_y_m)) <= NEAR_M,
         math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s),
         "itself" if robot in touching else "another" if touching else "",
-        not bounced and not piece.touched_by(tick, SETTLED_S),
+        not bounced and not piece.touched_by(tick, SETTLED_S) and truth.ball_z_m < _FLIES_M,
     )
 
 

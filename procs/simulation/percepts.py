@@ -25,6 +25,7 @@ from procs.simulation.gaps import Gaps
 from procs.simulation.line_scan import line_scan
 from procs.simulation.percept_errors import PRESETS
 from procs.simulation.sight import blurred, claimed, hidden, shaken
+from procs.vision.ball_finder import MOST_FIT
 from procs.vision.calibration import MirrorConfig
 
 _LEAST_VISIBLE = 0.4  # of a ball; ER-Force's threshold, too
@@ -146,14 +147,16 @@ class Percepts(Component):
             centre_m = (truth.ball_x_m, truth.ball_y_m)
             at_m = _seen_from(own, np.array([centre_m]))
             visible = 1.0 - float(hidden(at_m, robots_m, self.config.robot.radius_m)[0])
-            at_m = at_m * self._lengthened(truth.ball_z_m)
+            lengthened = self._lengthened(truth.ball_z_m)
+            at_m, fit = at_m * lengthened, visible * lengthened**2  # a ball in the air seems far away and large
             range_m = float(np.hypot(*at_m[0]))
-            if missed >= errors.ball_missed and visible >= _LEAST_VISIBLE and range_m <= self.config.ball_reach_m:
+            found = missed >= errors.ball_missed and _LEAST_VISIBLE <= fit <= MOST_FIT
+            if found and range_m <= self.config.ball_reach_m:
                 along, across = shaken(at_m, shake_px)
                 moved = blurred(
                     self._mirror, at_m, along + errors.ball_px * noise[0], across + errors.ball_px * noise[1]
                 )
-                percept = self._ball(moved[0], visible)
+                percept = self._ball(moved[0], min(fit, 1.0 / fit))
         if not percept.visible and phantom < -math.expm1(-errors.ball_phantoms_1_s * passed_s):
             range_m, angle_rad = 0.5 + distance * (self.config.ball_reach_m - 0.5), direction * math.tau
             percept = self._ball(range_m * np.array((math.cos(angle_rad), math.sin(angle_rad))), _LEAST_VISIBLE)

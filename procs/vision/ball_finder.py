@@ -31,6 +31,10 @@ class BallSighting:
     """0..1: how well the blob's size fits a ball that lies there."""
 
 
+MOST_FIT = 1.6
+"""Area of a ball a fifth as high as the camera, by that of a ball on the ground where it seems to lie."""
+
+
 @dataclass(frozen=True)
 class _Blob:
     """Something of the ball's colour: centre, area, and mean square distance of its pixels from the centre."""
@@ -51,7 +55,9 @@ class BallFinder:
     deviation_px: float = 0.3
     """Standard deviation of the found centre."""
     least_fit: float = 0.4
-    """Least ratio of the areas of blob and ball, and of ball and blob; other blobs are not balls."""
+    """Least ratio of the areas of blob and ball, of which robots may hide a part; smaller blobs are not balls."""
+    most_fit: float = MOST_FIT
+    """Largest ratio; a larger blob is no ball on the ground, but perhaps one in the air, nearer than it seems."""
     farthest_m: float = 8.0
     """Beyond that nothing is taken for a ball."""
 
@@ -94,7 +100,7 @@ class BallFinder:
         x_m, y_m, expected_px = place
         fit = blob.area_px / (math.pi * expected_px**2)
         confidence = min(fit, 1 / fit)
-        if confidence < self.least_fit or blob.spread_px2 > _MOST_SPREAD * expected_px**2 / 2:
+        if confidence < self.least_fit or fit > self.most_fit or blob.spread_px2 > _MOST_SPREAD * expected_px**2 / 2:
             return None
         # What is hidden shifts the centre by up to as much of the radius.
         deviation_px = self.deviation_px + expected_px * max(1.0 - fit - 0.1, 0.0) / 2

@@ -156,8 +156,13 @@ def test_ball_behind_a_robot_is_not_seen() -> None:
 
 
 def test_ball_in_flight_appears_further_away() -> None:
-    percept = look(bench(realism="none"), truth((OWN[0] + 2.0, OWN[1]), ball_z_m=0.32))
-    assert place_of(percept) == pytest.approx((OWN[0] + 4.0, OWN[1]))
+    percept = look(bench(realism="none"), truth((OWN[0] + 2.0, OWN[1]), ball_z_m=0.128))
+    assert place_of(percept) == pytest.approx((OWN[0] + 2.5, OWN[1]))
+    assert percept.confidence == pytest.approx(0.64)
+
+
+def test_ball_that_seems_too_large_is_not_seen() -> None:
+    assert not look(bench(realism="none"), truth((OWN[0] + 2.0, OWN[1]), ball_z_m=0.32)).visible
 
 
 @pytest.mark.slow
