@@ -46,8 +46,8 @@ class OwnView:
         self._rates = np.array((*self.velocity_m_s, self.omega_rad_s))  # of the pose (3)
         if before is not None and before.localized and self.localized and passed_s > 0.0:
             rates = _rates(before.pose, self.pose, passed_s)
-            if (np.abs(rates) < _FASTEST).all():
-                self._rates, self.omega_rad_s = rates, float(rates[2])
+            if all(abs(rate) < fastest for rate, fastest in zip(rates, _FASTEST, strict=True)):
+                self._rates, self.omega_rad_s = np.array(rates), rates[2]
         self._shake = 1.0 + (shake_s_m * float(np.hypot(*self.velocity_m_s))) ** 2
 
     def ball(self, percept: ball_percept_t, age_s: float) -> Seen:
@@ -102,11 +102,10 @@ class OwnView:
         return Seen(to_world(pose, seen.positions_m), by_sight_m2, by_pose_m2, seen.radii_m)
 
 
-def _rates(before: Floats, now: Floats, passed_s: float) -> Floats:
+def _rates(before: Floats, now: Floats, passed_s: float) -> tuple[float, float, float]:
     """Returns the change (3) of a pose in a second.
 
     Wheels that slip, as in a scrum, turn at up to 4 rad/s while the robot does not; the pose follows the gyro.
     """
-    change = now - before
-    change[2] = wrap(float(change[2]))
-    return change / passed_s
+    (x_m, y_m, heading_rad), (before_x_m, before_y_m, before_rad) = now.tolist(), before.tolist()
+    return (x_m - before_x_m) / passed_s, (y_m - before_y_m) / passed_s, wrap(heading_rad - before_rad) / passed_s

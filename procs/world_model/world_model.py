@@ -191,10 +191,12 @@ class WorldModel(Component):
         track, rivals = self._ball.track, self._opponents
         if self._walls.near(track, passed_s):
             return 1.0
-        places_m, places_m2 = team.at(self.clock.now_s)
-        robots = np.concatenate((np.concatenate((places_m, team.velocities_m_s), axis=1), rivals.states))
-        spreads_m2 = np.concatenate((places_m2, rivals.covariances[:, :2, :2]))
-        variances_m2 = (spreads_m2[:, 0, 0] + spreads_m2[:, 1, 1]) / 2
+        places = team.rows_at(self.clock.now_s)
+        mates = zip(places, team.velocities_m_s, strict=True)
+        robots = [(row[0], row[1], *velocity_m_s) for row, velocity_m_s in mates]
+        variances_m2 = [(xx_m2 + yy_m2) / 2 for _, _, xx_m2, _, _, yy_m2 in places]
+        robots += rivals.states.tolist()
+        variances_m2 += ((rivals.covariances[:, 0, 0] + rivals.covariances[:, 1, 1]) / 2).tolist()
         return touch_probability(track, robots, variances_m2, self._mouth_m, passed_s)
 
     def _see(self, robot: str, seen: Seen, age_s: float) -> None:
@@ -237,19 +239,21 @@ class WorldModel(Component):
                 self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
 
     def _holder(self, mates: list[Mate]) -> str:
-        """Returns the robot of the team that has the ball in its mouth, `?` for an opponent at the ball, or nothing."""
+        """Returns the robot of the team that has the ball in its mouth, `?` for an opponent at the ball, or nothing.
+
+        Ball and opponents are those of the message that was just filled in.
+        """
         if self.kicker_state.value.ball_held:
             return self._robot
         for mate in mates:
             if mate.holds_ball and self.clock.now_s - mate.told_s <= _HOLDER_S:
                 return mate.name
-        if self._ball.known and len(self._opponents.sure):
-            away_m = self._opponents.states[self._opponents.sure, :2] - self._ball.track.state[:2]
-            nearest_m = float(np.hypot(away_m[:, 0], away_m[:, 1]).min())
-            if nearest_m >= _NEAR_M:
-                return ""
-            covariance = self._ball.track.covariance
-            if nearest_m < self._mouth_m + 2 * math.sqrt(covariance[0, 0] + covariance[1, 1]):
+        ball, opponents = self.world_model.value.ball, self.world_model.value.opponents
+        if ball.known and opponents:
+            nearest_m = min(math.hypot(one.x_m - ball.x_m, one.y_m - ball.y_m) for one in opponents)
+            covariance = ball.covariance
+            near_m = self._mouth_m + 2 * math.sqrt(covariance[0][0] + covariance[1][1])
+            if nearest_m < min(_NEAR_M, near_m):
                 return "?"
         return ""
 
