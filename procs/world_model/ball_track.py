@@ -134,7 +134,7 @@ class BallTrack:
         ball.predict((time_us - self.time_us) / US_PER_S, step.rolling_m_s2, step.contact)
         if step.walls is not None:
             step.walls.contain(ball)
-        doubts = tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= _SECOND_SIGHT_US)
+        doubts = self.doubts and tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= _SECOND_SIGHT_US)
         return BallTrack(time_us, ball, self.seen_us, self.confirmed.copy(), doubts)
 
     def see(self, sighting: Sighting, rolling_m_s2: float) -> None:

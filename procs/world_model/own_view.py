@@ -4,7 +4,7 @@ import numpy as np
 
 from lcmtypes.robot import odometry_t
 from lcmtypes.soccer import ball_percept_t, obstacle_percepts_t, pose_t
-from procs.model.frames import Floats, covariance_to_world, rotation, to_world, wrap
+from procs.model.frames import Floats, rotation, to_world, wrap
 from procs.model.geometry import plausible
 from procs.world_model.seen import Seen
 from procs.world_model.team import Mate
@@ -43,11 +43,12 @@ class OwnView:
         velocity_m_s = (odometry.vx_m_s, odometry.vy_m_s) if moves else (0.0, 0.0)
         self.velocity_m_s = rotation(float(self.pose[2])) @ velocity_m_s
         self.omega_rad_s = odometry.omega_rad_s if moves else 0.0
-        self._rates = np.array((*self.velocity_m_s, self.omega_rad_s))  # of the pose (3)
+        rates: tuple[float, float, float] = (*self.velocity_m_s.tolist(), self.omega_rad_s)
         if before is not None and before.localized and self.localized and passed_s > 0.0:
-            rates = _rates(before.pose, self.pose, passed_s)
-            if all(abs(rate) < fastest for rate, fastest in zip(rates, _FASTEST, strict=True)):
-                self._rates, self.omega_rad_s = np.array(rates), rates[2]
+            turned = _rates(before.pose, self.pose, passed_s)
+            if all(abs(rate) < fastest for rate, fastest in zip(turned, _FASTEST, strict=True)):
+                rates, self.omega_rad_s = turned, turned[2]
+        self._rates = np.array(rates)  # of the pose (3)
         self._shake = 1.0 + (shake_s_m * float(np.hypot(*self.velocity_m_s))) ** 2
 
     def ball(self, percept: ball_percept_t, age_s: float) -> Seen:
@@ -98,8 +99,7 @@ class OwnView:
     def _from_here(self, seen: Seen, age_s: float) -> Seen:
         pose = self._at(age_s)
         shaken_m2 = seen.by_sight_m2 * self._shake
-        by_sight_m2, by_pose_m2 = covariance_to_world(pose, self.covariance, seen.positions_m, shaken_m2)
-        return Seen(to_world(pose, seen.positions_m), by_sight_m2, by_pose_m2, seen.radii_m)
+        return Seen(*to_world(pose, self.covariance, seen.positions_m, shaken_m2), seen.radii_m)
 
 
 def _rates(before: Floats, now: Floats, passed_s: float) -> tuple[float, float, float]:

@@ -13,6 +13,7 @@ import numpy as np
 from procs.model.estimation import linear_sum_assignment
 from procs.model.frames import Flags, Floats, Indices
 from procs.world_model.batch import Innovation, corrected, innovation_of, inverted, places_at, seen_at
+from procs.world_model.team import PlaceRow
 
 _STATES = 6
 _ACCELERATION_M_S2 = 3.0  # deviation of a robot's acceleration along an axis
@@ -92,19 +93,20 @@ class RobotTracks:
         if not len(self):
             return _NONE, _NONE, None
         predicted_m, gains, spreads = seen_at(self._x, self._p, age_s)
-        apart_m = positions_m[None] - predicted_m[:, None]
-        inverses, determinants = inverted(spreads[:, None] + covariances_m2[None])
-        surprises = _surprises(apart_m, inverses)
-        near = (surprises <= _GATE) & ((apart_m**2).sum(axis=2) <= _FARTHEST_M**2)
-        rows, columns = linear_sum_assignment(np.where(near, surprises, 1e3))
-        fits = near[rows, columns]
-        if not fits.all():
-            rows, columns = rows[fits], columns[fits]
-        if not len(rows):
-            return _NONE, _NONE, None
-        pairs = rows, columns
-        differences_m = positions_m[columns] - places_at(self._x[rows], age_s)
-        return rows, columns, innovation_of(gains[rows], differences_m, inverses[pairs], determinants[pairs])
+        rows, columns = _pairs(predicted_m.tolist(), positions_m.tolist())
+        if len(set(rows)) < len(rows) or len(set(columns)) < len(columns):
+            rows, columns = _best_pairs(positions_m[None] - predicted_m[:, None], spreads[:, None] + covariances_m2)
+        tracks, seen = np.array(rows, np.intp), np.array(columns, np.intp)
+        inverses, determinants = inverted(spreads[tracks] + covariances_m2[seen])
+        while len(tracks):
+            # From the states of these tracks alone: the product of more states may round otherwise.
+            differences_m = positions_m[seen] - places_at(self._x[tracks], age_s)
+            found = innovation_of(gains[tracks], differences_m, inverses, determinants)
+            fits = found.surprises <= _GATE
+            if fits.all():
+                return tracks, seen, found
+            tracks, seen, inverses, determinants = tracks[fits], seen[fits], inverses[fits], determinants[fits]
+        return tracks, seen, None
 
     def _begin(self, positions_m: Floats, covariances_m2: Floats, age_s: float) -> None:
         count = len(positions_m)
@@ -139,10 +141,36 @@ class RobotTracks:
         self.ages_s, self._sightings = self.ages_s[which], self._sightings[which]
 
 
+def _pairs(predicted_m: list[list[float]], positions_m: list[list[float]]) -> tuple[list[int], list[int]]:
+    """Returns track and sighting of all pairs that are near enough to each other, track by track."""
+    rows, columns = [], []
+    for row, (x_m, y_m) in enumerate(predicted_m):
+        for column, (seen_x_m, seen_y_m) in enumerate(positions_m):
+            away_x_m, away_y_m = seen_x_m - x_m, seen_y_m - y_m
+            if away_x_m * away_x_m + away_y_m * away_y_m <= _FARTHEST_M**2:
+                rows.append(row)
+                columns.append(column)
+    return rows, columns
+
+
+def _best_pairs(apart_m: Floats, spreads_m2: Floats) -> tuple[list[int], list[int]]:
+    """Returns track and sighting of the pairs that fit best together, each in one pair at most.
+
+    Args:
+        apart_m: (n, m, 2), differences of n tracks and m sightings.
+        spreads_m2: (n, m, 2, 2), their covariances.
+    """
+    surprises = _surprises(apart_m, spreads_m2)
+    near = (surprises <= _GATE) & ((apart_m**2).sum(axis=2) <= _FARTHEST_M**2)
+    rows, columns = linear_sum_assignment(np.where(near, surprises, 1e3))
+    fits = near[rows, columns]
+    return rows[fits].tolist(), columns[fits].tolist()
+
+
 def any_near(
     positions_m: Iterable[Sequence[float]],
     variances_m2: Iterable[tuple[float, float]],
-    known: Sequence[Sequence[float]],
+    known: Sequence[PlaceRow],
     within_m: float,
 ) -> bool:
     """Returns whether `without_known` may take a sighting away; False is certain, and found much faster.
@@ -152,13 +180,13 @@ def any_near(
     Args:
         positions_m: m pairs x, y of the sightings.
         variances_m2: m pairs of the sightings' variances along x and y.
-        known: k rows of the known robots: x, y (m), covariance xx, xy, yx, yy (m²).
+        known: k known robots.
         within_m: see `without_known`.
     """
     gate, least_m2 = 1.001 * _GATE, 2 * (within_m / 3) ** 2  # a little more than the gate, for rounding errors
     for (x_m, y_m), (xx_m2, yy_m2) in zip(positions_m, variances_m2, strict=True):
         spread_m2 = xx_m2 + yy_m2 + least_m2
-        for known_x_m, known_y_m, known_xx_m2, _, _, known_yy_m2 in known:
+        for known_x_m, known_y_m, _, _, known_xx_m2, _, _, known_yy_m2 in known:
             away_x_m, away_y_m = x_m - known_x_m, y_m - known_y_m
             if away_x_m * away_x_m + away_y_m * away_y_m <= gate * (spread_m2 + known_xx_m2 + known_yy_m2):
                 return True
@@ -184,7 +212,7 @@ def without_known(
     remain = np.ones(len(positions_m), dtype=bool)
     if len(positions_m) and len(known_m):
         spreads = covariances_m2[None] + known_m2[:, None] + np.eye(2) * (within_m / 3) ** 2
-        surprises = _surprises(positions_m[None] - known_m[:, None], inverted(spreads)[0])
+        surprises = _surprises(positions_m[None] - known_m[:, None], spreads)
         near = surprises <= _GATE
         if near.any():
             known, seen = linear_sum_assignment(np.where(near, surprises, 1e3))
@@ -216,7 +244,7 @@ def _motion(duration_s: float) -> tuple[Floats, Floats]:
     return np.asarray(np.kron(motion, np.eye(2)), np.float64), np.asarray(np.kron(noise, np.eye(2)), np.float64)
 
 
-def _surprises(innovations: Floats, inverses: Floats) -> Floats:
-    """Returns squared Mahalanobis distances (n, m) of innovations (n, m, 2), by inverse covariances (n, m, 2, 2)."""
-    weighted = (inverses @ innovations[..., None])[..., 0]
+def _surprises(innovations: Floats, spreads: Floats) -> Floats:
+    """Returns squared Mahalanobis distances (n, m) of innovations (n, m, 2) with covariances (n, m, 2, 2)."""
+    weighted = (inverted(spreads)[0] @ innovations[..., None])[..., 0]
     return np.asarray((innovations * weighted).sum(axis=-1))

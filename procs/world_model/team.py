@@ -13,8 +13,8 @@ _DRIFT_M_S = 0.5  # growth of that deviation while the mate drives on unseen
 _TURNING_S = 0.25  # messages further apart do not tell the speed of turning
 _EXTRAPOLATED_S = 0.5  # longest extrapolation of a velocity
 
-PlaceRow = tuple[float, float, float, float, float, float]
-"""A position x, y (m) and its covariance xx, xy, yx, yy (m²)."""
+PlaceRow = tuple[float, float, float, float, float, float, float, float]
+"""Position x, y (m), velocity vx, vy (m/s), and covariance xx, xy, yx, yy (m²) of the position."""
 
 
 def _least_m2() -> Floats:
@@ -61,11 +61,6 @@ class Places:
             for mate in mates
         ]
 
-    @property
-    def velocities_m_s(self) -> list[tuple[float, float]]:
-        """(k, 2), world frame."""
-        return [(mate[3], mate[4]) for mate in self._mates]
-
     def first(self, count: int) -> "Places":
         """Returns the places of the first mates."""
         if count == len(self._mates):
@@ -75,7 +70,7 @@ class Places:
         return made
 
     def rows_at(self, time_s: float) -> list[PlaceRow]:
-        """Returns k probable positions with their covariances, which grow away from the messages."""
+        """Returns k probable positions with velocities, and with covariances, which grow away from the messages."""
         rows = []
         for told_s, x_m, y_m, vx_m_s, vy_m_s, xx_m2, xy_m2, yx_m2, yy_m2 in self._mates:
             passed_s = time_s - told_s
@@ -83,13 +78,13 @@ class Places:
             drift_m = _LEAST_M + _DRIFT_M_S * abs(passed_s)
             drift_m2 = drift_m * drift_m
             x_m, y_m = x_m + vx_m_s * extrapolated_s, y_m + vy_m_s * extrapolated_s
-            rows.append((x_m, y_m, xx_m2 + drift_m2, xy_m2, yx_m2, yy_m2 + drift_m2))
+            rows.append((x_m, y_m, vx_m_s, vy_m_s, xx_m2 + drift_m2, xy_m2, yx_m2, yy_m2 + drift_m2))
         return rows
 
     def at(self, time_s: float) -> tuple[Floats, Floats]:
         """Returns the same as arrays: positions (k, 2) and covariances (k, 2, 2)."""
-        rows = np.array(self.rows_at(time_s)).reshape(-1, 6)
-        return rows[:, :2], rows[:, 2:].reshape(-1, 2, 2)
+        rows = np.array(self.rows_at(time_s)).reshape(-1, 8)
+        return rows[:, :2], rows[:, 4:].reshape(-1, 2, 2)
 
 
 class Team:

@@ -9,7 +9,7 @@ from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.own_view import OwnView
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
-from procs.world_model.team import Mate, PlaceRow, Places
+from procs.world_model.team import Mate, PlaceRow
 
 
 def fill_world_model(
@@ -17,16 +17,16 @@ def fill_world_model(
     view: OwnView,
     ball: BallTracker,
     mates: Sequence[Mate],
-    team: Places,
+    team: Sequence[PlaceRow],
     opponents: RobotTracks,
     now_s: float,
 ) -> None:
-    """Fills in the beliefs of the robot at `now_s`; the first of the team are the mates."""
+    """Fills in the beliefs of the robot at `now_s`; the first of the team then are the mates."""
     message.localized = view.localized
     message.x_m, message.y_m, message.heading_rad = view.pose.tolist()
     message.vx_m_s, message.vy_m_s = view.velocity_m_s.tolist()
     message.ball = _ball(ball)
-    rows = zip(mates, team.first(len(mates)).rows_at(now_s), strict=True)
+    rows = zip(mates, team[: len(mates)], strict=True)
     message.mates = [_mate(mate, place, now_s) for mate, place in rows]
     message.mate_roles = [mate.role for mate in mates]
     message.mate_agreements = [mate.agreement for mate in mates]
@@ -69,9 +69,8 @@ def _ball(ball: BallTracker) -> ball_estimate_t:
 def _mate(mate: Mate, place: PlaceRow, now_s: float) -> robot_estimate_t:
     estimate = robot_estimate_t()
     estimate.name, estimate.number = mate.name, mate.number
-    estimate.x_m, estimate.y_m, xx_m2, xy_m2, yx_m2, yy_m2 = place
+    estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s, xx_m2, xy_m2, yx_m2, yy_m2 = place
     estimate.heading_rad = mate.heading_rad
-    estimate.vx_m_s, estimate.vy_m_s = mate.velocity_m_s.tolist()
     estimate.covariance_m2 = [[xx_m2, xy_m2], [yx_m2, yy_m2]]
     estimate.age_s = now_s - mate.told_s
     return estimate

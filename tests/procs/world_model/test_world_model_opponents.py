@@ -168,7 +168,7 @@ def test_sighting_that_may_be_a_known_robot_is_never_overlooked() -> None:
         wide = turn @ np.diag(generator.uniform(0.001, 0.3, 2)) @ turn.T
         seen, mate = generator.uniform(-1.5, 1.5, (2, 1, 2))
         variances_m2 = [(float(wide[0, 0]), float(wide[1, 1]))]
-        found = any_near(seen.tolist(), variances_m2, [(*mate[0].tolist(), *wide.ravel().tolist())], 0.5)
+        found = any_near(seen.tolist(), variances_m2, [(*mate[0].tolist(), 0.0, 0.0, *wide.ravel().tolist())], 0.5)
         taken = not without_known(seen, wide[None], mate, wide[None], 0.5).all()
         assert found or not taken
         vain += found and not taken
