@@ -21,19 +21,22 @@ def rotation(angle_rad: float) -> Floats:
     return np.array([[cosine, -sine], [sine, cosine]])
 
 
-def to_world(pose: Floats, points_m: Floats) -> Floats:
-    """Points (n, 2) of the robot frame in the world frame; `pose` is x, y (m) and heading (rad)."""
-    return np.asarray(points_m @ rotation(float(pose[2])).T + pose[:2])
-
-
-def covariance_to_world(
+def to_world(
     pose: Floats, pose_covariance: Floats, points_m: Floats, covariances_m2: Floats
-) -> tuple[Floats, Floats]:
-    """Covariances (n, 2, 2) in the world frame of points (n, 2) that a robot sees, in two parts.
+) -> tuple[Floats, Floats, Floats]:
+    """Points (n, 2) that a robot sees, taken to the world frame with their covariances (n, 2, 2) in two parts.
 
     The first part comes from the sight itself and is new in each frame, the second from the robot's own pose,
-    whose error stays for a while and is shared by everything that the robot sees. `pose_covariance` (3, 3) is of
-    x, y, heading.
+    whose error stays for a while and is shared by everything that the robot sees.
+
+    Args:
+        pose: x, y (m) and heading (rad) of the robot.
+        pose_covariance: (3, 3) of the pose.
+        points_m: (n, 2), robot frame.
+        covariances_m2: (n, 2, 2) of the sight, robot frame.
+
+    Returns:
+        Points (n, 2), the covariances of the sight (n, 2, 2), and those that the pose adds (n, 2, 2).
     """
     turn = rotation(float(pose[2]))
     offsets_m = points_m @ turn.T
@@ -41,4 +44,5 @@ def covariance_to_world(
     by_pose[:, 0, 0] = by_pose[:, 1, 1] = 1.0
     by_pose[:, 0, 2] = -offsets_m[:, 1]
     by_pose[:, 1, 2] = offsets_m[:, 0]
-    return turn @ covariances_m2 @ turn.T, by_pose @ pose_covariance @ by_pose.transpose(0, 2, 1)
+    turned_m2 = turn @ covariances_m2 @ turn.T
+    return offsets_m + pose[:2], turned_m2, by_pose @ pose_covariance @ by_pose.transpose(0, 2, 1)

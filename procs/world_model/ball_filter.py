@@ -32,8 +32,11 @@ class Mode(IntEnum):
 
 _MODES = len(Mode)
 _STATES = 7
+_MOVING = (Mode.FREE, Mode.HANDLED, Mode.HIT)
 _EACH = np.arange(_MODES)
 _PLACE, _VELOCITY, _SETTLED, _CARPET = slice(0, 2), slice(2, 4), slice(4, 6), 6
+_SLIP = np.array([7 * row + column for row, column in ((2, 2), (3, 3), (4, 4), (5, 5), (2, 4), (3, 5))])
+"""Places in a flat covariance of the parts that the variance of the slip, velocity minus settled velocity, has."""
 _SPUN_SHARE = 1.0 - ROLLING_SHARE  # of the velocity at which the ball would roll with its spin, in the settled one
 _STILL = np.tile(np.eye(_STATES), (_MODES, 1, 1))
 """Derivatives of states that stay, but for the velocities of a resting ball."""
@@ -157,20 +160,25 @@ class BallFilter:
 
     def _rub(self, duration_s: float, rolling_m_s2: float) -> Floats:
         """Lets the ball move and the carpet act on it; returns the derivatives (modes, 7, 7) of the new states."""
-        p = self._p
-        slips_m2_s2 = p[:, 2, 2] + p[:, 3, 3] + p[:, 4, 4] + p[:, 5, 5] - 2.0 * (p[:, 2, 4] + p[:, 3, 5])
-        states, rows = [], []
-        for mode, state, slip_m2_s2 in zip(Mode, self._x.tolist(), slips_m2_s2.tolist(), strict=True):
-            if mode is Mode.RESTS:
-                states.append([*state[:2], 0.0, 0.0, 0.0, 0.0, state[6]])
-                continue
+        resting, *moving = self._x.tolist()
+        states, rows = [*resting[:2], 0.0, 0.0, 0.0, 0.0, resting[_CARPET]], []
+        slips = self._p.reshape(_MODES, -1)[1:, _SLIP].tolist()
+        for mode, state, (vx_vx, vy_vy, ux_ux, uy_uy, vx_ux, vy_uy) in zip(_MOVING, moving, slips, strict=True):
+            slip_m2_s2 = vx_vx + vy_vy + ux_ux + uy_uy - 2.0 * (vx_ux + vy_uy)
             moved, derivatives = _rubbed(mode, state, slip_m2_s2 / 2.0, duration_s, rolling_m_s2)
-            states.append(moved)
-            rows.append(derivatives)
-        self._x = np.array(states)
+            states += moved
+            rows += derivatives
+        self._x = np.array(states).reshape(_MODES, _STATES)
         motion = _STILL.copy()
-        motion[1:, :_CARPET, 2:] = rows
+        motion[1:, :_CARPET, 2:] = np.array(rows).reshape(len(_MOVING), _CARPET, -1)
         return motion
+
+    def surely_within(self, x_m: float, y_m: float) -> bool:
+        """Returns whether all models have the ball's middle between plus and minus these places.
+
+        This takes a fraction of the time of the mixture's mean, which lies between those of the models.
+        """
+        return all(-x_m < state[0] < x_m and -y_m < state[1] < y_m for state in self._x[:, _PLACE].tolist())
 
     def stay_within(self, x_m: float, y_m: float, bounce: float) -> None:
         """Lets a ball beyond the walls, at plus and minus these places of its middle, bounce off them.
@@ -287,7 +295,7 @@ class BallFilter:
 
 def _rubbed(
     mode: Mode, state: list[float], slip_m2_s2: float, duration_s: float, rolling_m_s2: float
-) -> tuple[list[float], list[list[float]]]:
+) -> tuple[list[float], list[float]]:
     """Lets the carpet act on a moving ball for a step.
 
     The direction of the slip is that of a normal distribution: it fades where the slip is uncertain, and where the slip
@@ -301,7 +309,8 @@ def _rubbed(
         rolling_m_s2: deceleration of the rolling ball on the usual carpet.
 
     Returns:
-        The new state (7), and the derivatives of its first six values by the last five of the old one.
+        The new state (7), and the derivatives (6, 5) of its first six values by the last five of the old one, row
+        after row.
     """
     x_m, y_m, vx_m_s, vy_m_s, ux_m_s, uy_m_s, carpet = state
     slip_x_m_s, slip_y_m_s = vx_m_s - ux_m_s, vy_m_s - uy_m_s
@@ -316,11 +325,8 @@ def _rubbed(
         xx, xy, yy = ROLLING_SHARE * xx, ROLLING_SHARE * xy, ROLLING_SHARE * yy
         wx_m_s, wy_m_s = vx_m_s, vy_m_s
         ux_m_s, uy_m_s = ux_m_s + step_m_s * along_x, uy_m_s + step_m_s * along_y
-        by_velocity = [[1.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0]]
-        by_settled = [
-            [xx, xy, 1.0 - xx, -xy, per_carpet_m_s * along_x],
-            [xy, yy, -xy, 1.0 - yy, per_carpet_m_s * along_y],
-        ]
+        by_velocity = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
+        by_settled = [xx, xy, 1.0 - xx, -xy, per_carpet_m_s * along_x, xy, yy, -xy, 1.0 - yy, per_carpet_m_s * along_y]
     else:
         speed_m_s = math.hypot(ux_m_s, uy_m_s) + _TINY
         share = rolling_m_s2 * duration_s * (1.0 - math.sqrt(slip2_m2_s2) * scale) / speed_m_s  # that rolling takes
@@ -329,15 +335,13 @@ def _rubbed(
         wx_m_s = vx_m_s - step_m_s * along_x - lost * ux_m_s
         wy_m_s = vy_m_s - step_m_s * along_y - lost * uy_m_s
         ux_m_s, uy_m_s = (1.0 - lost) * ux_m_s, (1.0 - lost) * uy_m_s
-        by_velocity = [
-            [1.0 - xx, -xy, xx, xy, -per_carpet_m_s * along_x - by_x_m_s],
-            [-xy, 1.0 - yy, xy, yy, -per_carpet_m_s * along_y - by_y_m_s],
-        ]
-        by_settled = [[0.0, 0.0, 1.0, 0.0, -by_x_m_s], [0.0, 0.0, 0.0, 1.0, -by_y_m_s]]
+        slid_x_m_s, slid_y_m_s = -per_carpet_m_s * along_x - by_x_m_s, -per_carpet_m_s * along_y - by_y_m_s
+        by_velocity = [1.0 - xx, -xy, xx, xy, slid_x_m_s, -xy, 1.0 - yy, xy, yy, slid_y_m_s]
+        by_settled = [0.0, 0.0, 1.0, 0.0, -by_x_m_s, 0.0, 0.0, 0.0, 1.0, -by_y_m_s]
     half_s = duration_s / 2.0
-    by_place = [[half_s * each for each in row] for row in by_velocity]
-    by_place[0][0] += half_s
-    by_place[1][1] += half_s
+    by_place = [half_s * each for each in by_velocity]
+    by_place[0] += half_s
+    by_place[6] += half_s
     x_m, y_m = x_m + half_s * (vx_m_s + wx_m_s), y_m + half_s * (vy_m_s + wy_m_s)
     moved = [x_m, y_m, wx_m_s, wy_m_s, ux_m_s, uy_m_s, max(_LEAST_CARPET, carpet)]
     return moved, [*by_place, *by_velocity, *by_settled]

@@ -62,15 +62,18 @@ class Walls:
 
     def contain(self, ball: BallFilter) -> None:
         """Lets a ball beyond the walls bounce off them."""
-        x_m, y_m, *_ = np.abs(ball.state).tolist()
-        if x_m < self.goal_x_m - _INSIDE_M and y_m < self.y_m - _INSIDE_M:
+        x_limit_m, y_limit_m = self.goal_x_m - _INSIDE_M, self.y_m - _INSIDE_M
+        if ball.surely_within(x_limit_m, y_limit_m):
+            return
+        x_m, y_m, *_ = map(abs, ball.state.tolist())
+        if x_m < x_limit_m and y_m < y_limit_m:
             return
         in_goal = y_m < self.goal_half_width_m
         ball.stay_within(self.net_x_m if in_goal else self.x_m, self.y_m, _NET_BOUNCE if in_goal else _WALL_BOUNCE)
 
     def near(self, ball: BallFilter, duration_s: float) -> bool:
         """Returns whether the ball may reach a wall, a net or a post within `duration_s`."""
-        (x_m, y_m, vx_m_s, vy_m_s), covariance = np.abs(ball.state).tolist(), ball.covariance
+        (x_m, y_m, vx_m_s, vy_m_s), covariance = map(abs, ball.state.tolist()), ball.covariance
         margin_m = _MARGIN_M + duration_s * math.hypot(vx_m_s, vy_m_s)
         margin_m += min(_MOST_M, math.sqrt(2 * (covariance[0, 0] + covariance[1, 1])))
         at_posts = x_m > self.goal_x_m - margin_m and abs(y_m - self.goal_half_width_m) < margin_m + _POST_M
@@ -131,7 +134,7 @@ class BallTrack:
         ball.predict((time_us - self.time_us) / US_PER_S, step.rolling_m_s2, step.contact)
         if step.walls is not None:
             step.walls.contain(ball)
-        doubts = tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= _SECOND_SIGHT_US)
+        doubts = self.doubts and tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= _SECOND_SIGHT_US)
         return BallTrack(time_us, ball, self.seen_us, self.confirmed.copy(), doubts)
 
     def see(self, sighting: Sighting, rolling_m_s2: float) -> None:

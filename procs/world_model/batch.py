@@ -41,10 +41,13 @@ def innovation(
         age_s: time since the exposure.
     """
     predicted_m, gains, spreads = seen_at(states, covariances, age_s)
-    differences = positions_m - predicted_m
-    inverses, determinants = inverted(spreads + spreads_m2)
-    weighted = (inverses @ differences[..., None])[..., 0]
-    return Innovation(gains, inverses, weighted, (differences * weighted).sum(axis=1), determinants)
+    return innovation_of(gains, positions_m - predicted_m, *inverted(spreads + spreads_m2))
+
+
+def innovation_of(gains: Floats, differences_m: Floats, inverses: Floats, determinants: Floats) -> Innovation:
+    """Returns the innovation of differences (..., 2), with what `inverted` returns for their covariances."""
+    weighted = (inverses @ differences_m[..., None])[..., 0]
+    return Innovation(gains, inverses, weighted, (differences_m * weighted).sum(axis=-1), determinants)
 
 
 def seen_at(states: Floats, covariances: Floats, age_s: float) -> tuple[Floats, Floats, Floats]:
@@ -53,12 +56,17 @@ def seen_at(states: Floats, covariances: Floats, age_s: float) -> tuple[Floats, 
     Returns:
         Positions (n, 2), their covariance with the states (n, k, 2), and their covariance (n, 2, 2).
     """
-    positions_m, gains = states[:, :2], covariances[:, :, :2]
     if not age_s:
-        return positions_m, gains, gains[:, :2]
+        gains = covariances[:, :, :2]
+        return states[:, :2], gains, gains[:, :2]
     sight = _sight(age_s)
     gains = covariances @ sight.T
     return states @ sight.T, gains, sight @ gains
+
+
+def places_at(states: Floats, age_s: float) -> Floats:
+    """Returns the positions (n, 2) that belong to states (n, k) a while ago."""
+    return states @ _sight(age_s).T if age_s else states[:, :2]
 
 
 @lru_cache(maxsize=64)

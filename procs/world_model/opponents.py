@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from procs.world_model.robot_tracks import without_known
+from procs.world_model.robot_tracks import any_near, without_known
 from procs.world_model.seen import Seen
 from procs.world_model.team import Places
 
@@ -31,7 +31,15 @@ def strangers(seen: Seen, team: Places, seen_s: float, settings: OpponentSetting
     if not len(seen.positions_m):
         return seen
     covariances_m2 = seen.covariances_m2
-    on_field = (np.abs(seen.positions_m) <= (settings.half_length_m, settings.half_width_m)).all(axis=1)
-    clear = covariances_m2[:, 0, 0] + covariances_m2[:, 1, 1] <= settings.deviation_m**2
-    unknown = without_known(seen.positions_m, covariances_m2, *team.at(seen_s), settings.mate_radius_m)
-    return seen.only(on_field & clear & unknown)
+    places_m, spreads_m2 = seen.positions_m.tolist(), [(one[0][0], one[1][1]) for one in covariances_m2.tolist()]
+    most_m2 = settings.deviation_m**2
+    chosen = np.array(
+        [
+            abs(x_m) <= settings.half_length_m and abs(y_m) <= settings.half_width_m and xx_m2 + yy_m2 <= most_m2
+            for (x_m, y_m), (xx_m2, yy_m2) in zip(places_m, spreads_m2, strict=True)
+        ]
+    )
+    # Mates hardly ever name a robot of the team, as they have left them out themselves.
+    if any_near(places_m, spreads_m2, team.rows_at(seen_s), settings.mate_radius_m):
+        chosen &= without_known(seen.positions_m, covariances_m2, *team.at(seen_s), settings.mate_radius_m)
+    return seen if chosen.all() else seen.only(chosen)

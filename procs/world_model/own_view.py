@@ -4,7 +4,7 @@ import numpy as np
 
 from lcmtypes.robot import odometry_t
 from lcmtypes.soccer import ball_percept_t, obstacle_percepts_t, pose_t
-from procs.model.frames import Floats, covariance_to_world, rotation, to_world, wrap
+from procs.model.frames import Floats, rotation, to_world, wrap
 from procs.model.geometry import plausible
 from procs.world_model.seen import Seen
 from procs.world_model.team import Mate
@@ -43,11 +43,12 @@ class OwnView:
         velocity_m_s = (odometry.vx_m_s, odometry.vy_m_s) if moves else (0.0, 0.0)
         self.velocity_m_s = rotation(float(self.pose[2])) @ velocity_m_s
         self.omega_rad_s = odometry.omega_rad_s if moves else 0.0
-        self._rates = np.array((*self.velocity_m_s, self.omega_rad_s))  # of the pose (3)
+        rates: tuple[float, float, float] = (*self.velocity_m_s.tolist(), self.omega_rad_s)
         if before is not None and before.localized and self.localized and passed_s > 0.0:
-            rates = _rates(before.pose, self.pose, passed_s)
-            if (np.abs(rates) < _FASTEST).all():
-                self._rates, self.omega_rad_s = rates, float(rates[2])
+            turned = _rates(before.pose, self.pose, passed_s)
+            if all(abs(rate) < fastest for rate, fastest in zip(turned, _FASTEST, strict=True)):
+                rates, self.omega_rad_s = turned, turned[2]
+        self._rates = np.array(rates)  # of the pose (3)
         self._shake = 1.0 + (shake_s_m * float(np.hypot(*self.velocity_m_s))) ** 2
 
     def ball(self, percept: ball_percept_t, age_s: float) -> Seen:
@@ -98,15 +99,13 @@ class OwnView:
     def _from_here(self, seen: Seen, age_s: float) -> Seen:
         pose = self._at(age_s)
         shaken_m2 = seen.by_sight_m2 * self._shake
-        by_sight_m2, by_pose_m2 = covariance_to_world(pose, self.covariance, seen.positions_m, shaken_m2)
-        return Seen(to_world(pose, seen.positions_m), by_sight_m2, by_pose_m2, seen.radii_m)
+        return Seen(*to_world(pose, self.covariance, seen.positions_m, shaken_m2), seen.radii_m)
 
 
-def _rates(before: Floats, now: Floats, passed_s: float) -> Floats:
+def _rates(before: Floats, now: Floats, passed_s: float) -> tuple[float, float, float]:
     """Returns the change (3) of a pose in a second.
 
     Wheels that slip, as in a scrum, turn at up to 4 rad/s while the robot does not; the pose follows the gyro.
     """
-    change = now - before
-    change[2] = wrap(float(change[2]))
-    return change / passed_s
+    (x_m, y_m, heading_rad), (before_x_m, before_y_m, before_rad) = now.tolist(), before.tolist()
+    return (x_m - before_x_m) / passed_s, (y_m - before_y_m) / passed_s, wrap(heading_rad - before_rad) / passed_s

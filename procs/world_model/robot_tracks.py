@@ -5,13 +5,15 @@ that start, and lead those that brake.
 """
 
 import math
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 import numpy as np
 
 from procs.model.estimation import linear_sum_assignment
 from procs.model.frames import Flags, Floats, Indices
-from procs.world_model.batch import corrected, innovation, inverted, seen_at
+from procs.world_model.batch import Innovation, corrected, innovation_of, inverted, places_at, seen_at
+from procs.world_model.team import PlaceRow
 
 _STATES = 6
 _ACCELERATION_M_S2 = 3.0  # deviation of a robot's acceleration along an axis
@@ -22,6 +24,7 @@ _GATE = 9.2  # chi-square, 2 degrees of freedom, 99 %
 _FARTHEST_M = 1.5
 _SAME_M = 0.45  # robots are 0.5 m wide
 _AXES = np.arange(_STATES)
+_NONE: Indices = np.zeros(0, np.intp)
 
 
 class RobotTracks:
@@ -72,11 +75,9 @@ class RobotTracks:
         """
         if not len(positions_m):
             return
-        tracks, seen = self._assign(positions_m, covariances_m2, age_s)
-        if len(tracks):
-            before = self._x[tracks], self._p[tracks]
-            found = innovation(*before, positions_m[seen], covariances_m2[seen], age_s)
-            self._x[tracks], self._p[tracks] = corrected(*before, found)
+        tracks, seen, found = self._assign(positions_m, covariances_m2, age_s)
+        if found is not None:
+            self._x[tracks], self._p[tracks] = corrected(self._x[tracks], self._p[tracks], found)
             self.ages_s[tracks] = np.minimum(self.ages_s[tracks], age_s)
             self._sightings[tracks] += 1
         if len(seen) < len(positions_m):
@@ -85,17 +86,27 @@ class RobotTracks:
             self._begin(positions_m[free], covariances_m2[free], age_s)
         self._join()
 
-    def _assign(self, positions_m: Floats, covariances_m2: Floats, age_s: float) -> tuple[Indices, Indices]:
-        """Returns the tracks that are seen, and the sighting of each."""
+    def _assign(
+        self, positions_m: Floats, covariances_m2: Floats, age_s: float
+    ) -> tuple[Indices, Indices, Innovation | None]:
+        """Returns the tracks that are seen, the sighting of each, and how they differ; None if no track is seen."""
         if not len(self):
-            return np.zeros(0, np.intp), np.zeros(0, np.intp)
-        predicted_m, _, spreads = seen_at(self._x, self._p, age_s)
-        apart_m = positions_m[None] - predicted_m[:, None]
-        surprises = _surprises(apart_m, spreads[:, None] + covariances_m2[None])
-        near = (surprises <= _GATE) & ((apart_m**2).sum(axis=2) <= _FARTHEST_M**2)
-        rows, columns = linear_sum_assignment(np.where(near, surprises, 1e3))
-        fits = near[rows, columns]
-        return rows[fits], columns[fits]
+            return _NONE, _NONE, None
+        predicted_m, gains, spreads = seen_at(self._x, self._p, age_s)
+        rows, columns = _pairs(predicted_m.tolist(), positions_m.tolist())
+        if len(set(rows)) < len(rows) or len(set(columns)) < len(columns):
+            rows, columns = _best_pairs(positions_m[None] - predicted_m[:, None], spreads[:, None] + covariances_m2)
+        tracks, seen = np.array(rows, np.intp), np.array(columns, np.intp)
+        inverses, determinants = inverted(spreads[tracks] + covariances_m2[seen])
+        while len(tracks):
+            # From the states of these tracks alone: the product of more states may round otherwise.
+            differences_m = positions_m[seen] - places_at(self._x[tracks], age_s)
+            found = innovation_of(gains[tracks], differences_m, inverses, determinants)
+            fits = found.surprises <= _GATE
+            if fits.all():
+                return tracks, seen, found
+            tracks, seen, inverses, determinants = tracks[fits], seen[fits], inverses[fits], determinants[fits]
+        return tracks, seen, None
 
     def _begin(self, positions_m: Floats, covariances_m2: Floats, age_s: float) -> None:
         count = len(positions_m)
@@ -111,12 +122,15 @@ class RobotTracks:
 
     def _join(self) -> None:
         """Drops the less seen of two tracks in one place; of equals, the younger."""
-        if len(self) < 2:
+        places_m = self._x[:, :2].tolist()
+        if not any(
+            (x_m - other_x_m) * (x_m - other_x_m) + (y_m - other_y_m) * (y_m - other_y_m) < _SAME_M**2
+            for track, (x_m, y_m) in enumerate(places_m)
+            for other_x_m, other_y_m in places_m[:track]
+        ):
             return
         apart_m = self.states[:, None, :2] - self.states[None, :, :2]
         same = (apart_m**2).sum(axis=2) < _SAME_M**2
-        if np.count_nonzero(same) == len(self):
-            return
         kept = np.zeros(len(self), dtype=bool)
         for track in np.argsort(-self._sightings, kind="stable"):
             kept[track] = not (same[track] & kept).any()
@@ -125,6 +139,58 @@ class RobotTracks:
     def _keep(self, which: Flags) -> None:
         self._x, self._p = self._x[which], self._p[which]
         self.ages_s, self._sightings = self.ages_s[which], self._sightings[which]
+
+
+def _pairs(predicted_m: list[list[float]], positions_m: list[list[float]]) -> tuple[list[int], list[int]]:
+    """Returns track and sighting of all pairs that are near enough to each other, track by track."""
+    rows, columns = [], []
+    for row, (x_m, y_m) in enumerate(predicted_m):
+        for column, (seen_x_m, seen_y_m) in enumerate(positions_m):
+            away_x_m, away_y_m = seen_x_m - x_m, seen_y_m - y_m
+            if away_x_m * away_x_m + away_y_m * away_y_m <= _FARTHEST_M**2:
+                rows.append(row)
+                columns.append(column)
+    return rows, columns
+
+
+def _best_pairs(apart_m: Floats, spreads_m2: Floats) -> tuple[list[int], list[int]]:
+    """Returns track and sighting of the pairs that fit best together, each in one pair at most.
+
+    Args:
+        apart_m: (n, m, 2), differences of n tracks and m sightings.
+        spreads_m2: (n, m, 2, 2), their covariances.
+    """
+    surprises = _surprises(apart_m, spreads_m2)
+    near = (surprises <= _GATE) & ((apart_m**2).sum(axis=2) <= _FARTHEST_M**2)
+    rows, columns = linear_sum_assignment(np.where(near, surprises, 1e3))
+    fits = near[rows, columns]
+    return rows[fits].tolist(), columns[fits].tolist()
+
+
+def any_near(
+    positions_m: Iterable[Sequence[float]],
+    variances_m2: Iterable[tuple[float, float]],
+    known: Sequence[PlaceRow],
+    within_m: float,
+) -> bool:
+    """Returns whether `without_known` may take a sighting away; False is certain, and found much faster.
+
+    A squared Mahalanobis distance is at least the squared distance divided by the trace of the covariance.
+
+    Args:
+        positions_m: m pairs x, y of the sightings.
+        variances_m2: m pairs of the sightings' variances along x and y.
+        known: k known robots.
+        within_m: see `without_known`.
+    """
+    gate, least_m2 = 1.001 * _GATE, 2 * (within_m / 3) ** 2  # a little more than the gate, for rounding errors
+    for (x_m, y_m), (xx_m2, yy_m2) in zip(positions_m, variances_m2, strict=True):
+        spread_m2 = xx_m2 + yy_m2 + least_m2
+        for known_x_m, known_y_m, _, _, known_xx_m2, _, _, known_yy_m2 in known:
+            away_x_m, away_y_m = x_m - known_x_m, y_m - known_y_m
+            if away_x_m * away_x_m + away_y_m * away_y_m <= gate * (spread_m2 + known_xx_m2 + known_yy_m2):
+                return True
+    return False
 
 
 def without_known(

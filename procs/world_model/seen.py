@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -44,10 +45,12 @@ class Seen:
             proper = row[2] > 0 and row[5] > 0 and row[2] * row[5] > xy_m2 * yx_m2
             if proper and plausible(*row):
                 rows.append(row)
-        values = np.array(rows, np.float64).reshape(-1, 7)
+        if not rows:
+            return cls.NOTHING
+        values = np.array(rows, np.float64)
         return cls(values[:, :2], values[:, 2:6].reshape(-1, 2, 2), np.zeros((len(values), 2, 2)), values[:, 6])
 
-    @property
+    @cached_property
     def covariances_m2(self) -> Floats:
         """(n, 2, 2) of a single sighting."""
         return self.by_sight_m2 + self.by_pose_m2

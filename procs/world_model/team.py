@@ -1,7 +1,7 @@
 """The newest message of each team mate about itself."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,14 +13,15 @@ _DRIFT_M_S = 0.5  # growth of that deviation while the mate drives on unseen
 _TURNING_S = 0.25  # messages further apart do not tell the speed of turning
 _EXTRAPOLATED_S = 0.5  # longest extrapolation of a velocity
 
-_UNIT = np.eye(2)
+PlaceRow = tuple[float, float, float, float, float, float, float, float]
+"""Position x, y (m), velocity vx, vy (m/s), and covariance xx, xy, yx, yy (m²) of the position."""
 
 
 def _least_m2() -> Floats:
     return np.eye(2) * _LEAST_M**2
 
 
-@dataclass(frozen=True)
+@dataclass
 class Mate:
     """A team mate as it was at `told_s`, world frame."""
 
@@ -49,34 +50,41 @@ class Mate:
 
 
 class Places:
-    """Positions of k mates at times near their messages, computed in one batch."""
+    """Positions of k mates at times near their messages.
+
+    Plain numbers, as NumPy takes longer than all of the arithmetic for a handful of robots.
+    """
 
     def __init__(self, mates: Sequence[Mate]) -> None:
-        self._told_s = np.array([mate.told_s for mate in mates])
-        self._positions_m = np.array([mate.position_m for mate in mates]).reshape(-1, 2)
-        self._velocities_m_s = np.array([mate.velocity_m_s for mate in mates]).reshape(-1, 2)
-        self._covariances_m2 = np.array([mate.covariance_m2 for mate in mates]).reshape(-1, 2, 2)
-
-    @property
-    def velocities_m_s(self) -> Floats:
-        """(k, 2), world frame."""
-        return self._velocities_m_s
+        self._mates = [
+            (mate.told_s, *mate.position_m.tolist(), *mate.velocity_m_s.tolist(), *mate.covariance_m2.ravel().tolist())
+            for mate in mates
+        ]
 
     def first(self, count: int) -> "Places":
         """Returns the places of the first mates."""
-        if count == len(self._told_s):
+        if count == len(self._mates):
             return self
-        made = Places.__new__(Places)
-        made.__dict__.update({name: values[:count] for name, values in self.__dict__.items()})
+        made = Places(())
+        made._mates = self._mates[:count]
         return made
 
+    def rows_at(self, time_s: float) -> list[PlaceRow]:
+        """Returns k probable positions with velocities, and with covariances, which grow away from the messages."""
+        rows = []
+        for told_s, x_m, y_m, vx_m_s, vy_m_s, xx_m2, xy_m2, yx_m2, yy_m2 in self._mates:
+            passed_s = time_s - told_s
+            extrapolated_s = min(_EXTRAPOLATED_S, max(-_EXTRAPOLATED_S, passed_s))
+            drift_m = _LEAST_M + _DRIFT_M_S * abs(passed_s)
+            drift_m2 = drift_m * drift_m
+            x_m, y_m = x_m + vx_m_s * extrapolated_s, y_m + vy_m_s * extrapolated_s
+            rows.append((x_m, y_m, vx_m_s, vy_m_s, xx_m2 + drift_m2, xy_m2, yx_m2, yy_m2 + drift_m2))
+        return rows
+
     def at(self, time_s: float) -> tuple[Floats, Floats]:
-        """Returns probable positions (k, 2) and their covariances (k, 2, 2), which grow away from the messages."""
-        passed_s = time_s - self._told_s
-        extrapolated_s = np.clip(passed_s, -_EXTRAPOLATED_S, _EXTRAPOLATED_S)
-        drifts_m = _LEAST_M + _DRIFT_M_S * np.abs(passed_s)
-        positions_m = self._positions_m + self._velocities_m_s * extrapolated_s[:, None]
-        return positions_m, self._covariances_m2 + _UNIT * (drifts_m**2)[:, None, None]
+        """Returns the same as arrays: positions (k, 2) and covariances (k, 2, 2)."""
+        rows = np.array(self.rows_at(time_s)).reshape(-1, 8)
+        return rows[:, :2], rows[:, 4:].reshape(-1, 2, 2)
 
 
 class Team:
@@ -88,7 +96,7 @@ class Team:
     def tell(self, mate: Mate) -> Mate | None:
         """Takes a mate's message.
 
-        Returns the mate with its speed of turning; None if a newer message is known, as radio may change the order.
+        Sets its speed of turning and returns it; None if a newer message is known, as radio may change the order.
         """
         known = self._mates.get(mate.name)
         if known is not None:
@@ -96,7 +104,7 @@ class Team:
             if passed_s <= 0.0:
                 return None
             if passed_s <= _TURNING_S and known.localized and mate.localized:
-                mate = replace(mate, omega_rad_s=wrap(mate.heading_rad - known.heading_rad) / passed_s)
+                mate.omega_rad_s = wrap(mate.heading_rad - known.heading_rad) / passed_s
         self._mates[mate.name] = mate
         return mate
 

@@ -9,7 +9,7 @@ from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.own_view import OwnView
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
-from procs.world_model.team import Mate, Places
+from procs.world_model.team import Mate, PlaceRow
 
 
 def fill_world_model(
@@ -17,17 +17,17 @@ def fill_world_model(
     view: OwnView,
     ball: BallTracker,
     mates: Sequence[Mate],
-    team: Places,
+    team: Sequence[PlaceRow],
     opponents: RobotTracks,
     now_s: float,
 ) -> None:
-    """Fills in the beliefs of the robot at `now_s`; the first of the team are the mates."""
+    """Fills in the beliefs of the robot at `now_s`; the first of the team then are the mates."""
     message.localized = view.localized
     message.x_m, message.y_m, message.heading_rad = view.pose.tolist()
     message.vx_m_s, message.vy_m_s = view.velocity_m_s.tolist()
     message.ball = _ball(ball)
-    rows = zip(mates, *(values.tolist() for values in team.first(len(mates)).at(now_s)), strict=True)
-    message.mates = [_mate(mate, place_m, covariance_m2, now_s) for mate, place_m, covariance_m2 in rows]
+    rows = zip(mates, team[: len(mates)], strict=True)
+    message.mates = [_mate(mate, place, now_s) for mate, place in rows]
     message.mate_roles = [mate.role for mate in mates]
     message.mate_agreements = [mate.agreement for mate in mates]
     message.opponents = _opponents(opponents)
@@ -66,24 +66,23 @@ def _ball(ball: BallTracker) -> ball_estimate_t:
     return estimate
 
 
-def _mate(mate: Mate, place_m: list[float], covariance_m2: list[list[float]], now_s: float) -> robot_estimate_t:
+def _mate(mate: Mate, place: PlaceRow, now_s: float) -> robot_estimate_t:
     estimate = robot_estimate_t()
     estimate.name, estimate.number = mate.name, mate.number
-    estimate.x_m, estimate.y_m = place_m
+    estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s, xx_m2, xy_m2, yx_m2, yy_m2 = place
     estimate.heading_rad = mate.heading_rad
-    estimate.vx_m_s, estimate.vy_m_s = mate.velocity_m_s.tolist()
-    estimate.covariance_m2 = covariance_m2
+    estimate.covariance_m2 = [[xx_m2, xy_m2], [yx_m2, yy_m2]]
     estimate.age_s = now_s - mate.told_s
     return estimate
 
 
 def _opponents(opponents: RobotTracks) -> list[robot_estimate_t]:
     """Returns the tracks that are no ghosts."""
-    sure, estimates = opponents.sure, []
-    values = opponents.states[sure], opponents.covariances[sure, :2, :2], opponents.ages_s[sure]
-    for state, covariance_m2, age_s in zip(*(each.tolist() for each in values), strict=True):
+    states, covariances_m2 = opponents.states.tolist(), opponents.covariances[:, :2, :2].tolist()
+    ages_s, estimates = opponents.ages_s.tolist(), []
+    for track in opponents.sure.tolist():
         estimate = robot_estimate_t()
-        estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s = state
-        estimate.covariance_m2, estimate.age_s = covariance_m2, age_s
+        estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s = states[track]
+        estimate.covariance_m2, estimate.age_s = covariances_m2[track], ages_s[track]
         estimates.append(estimate)
     return estimates

@@ -6,6 +6,7 @@ does not know its place is left out. While the robot itself does not know its pl
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from pydantic import Field as Setting
@@ -33,7 +34,7 @@ from procs.world_model.opponents import OpponentSettings, strangers
 from procs.world_model.own_view import OwnView
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
-from procs.world_model.team import Mate, Places, Team
+from procs.world_model.team import Mate, PlaceRow, Places, Team
 from procs.world_model.told import ball_of, held_by, mate_of, mouth_of, obstacles_of
 from procs.world_model.world_messages import fill_team_message, fill_world_model
 
@@ -125,9 +126,10 @@ class WorldModel(Component):
         told = self._listen(now_s)
         mates = self._team.localized(now_s, config.mate_timeout_s)
         team = Places([*mates, view.as_mate(self._robot, now_s)] if view.localized else mates)
-        self._follow_ball(view, team, told, passed_s)
+        places = team.rows_at(now_s)
+        self._follow_ball(view, places, told, passed_s)
         self._follow_opponents(view, team, len(mates), told, passed_s)
-        fill_world_model(self.world_model.value, view, self._ball, mates, team, self._opponents, now_s)
+        fill_world_model(self.world_model.value, view, self._ball, mates, places, self._opponents, now_s)
         self.world_model.value.ball_holder = self._holder(mates)
         if not config.use_ball_velocity:
             self.world_model.value.ball.vx_m_s = self.world_model.value.ball.vy_m_s = 0.0
@@ -153,7 +155,7 @@ class WorldModel(Component):
         return told if self.config.use_team_sight else []
 
     def _follow_ball(
-        self, view: OwnView, team: Places, told: list[tuple[team_message_t, Mate]], passed_s: float
+        self, view: OwnView, team: Sequence[PlaceRow], told: list[tuple[team_message_t, Mate]], passed_s: float
     ) -> None:
         config, kicker = self.config, self.kicker_state.value
         kicked = kicker.kicks != self._kicks and plausible(kicker.kick_speed_m_s)
@@ -184,17 +186,16 @@ class WorldModel(Component):
             if mate.holds_ball and mate.localized and told_s <= _STALE_S and not kicked_just_now:
                 self._ball.hold(mate.name, *held_by(mate, self._mouth_m), told_s)
 
-    def _contact(self, team: Places, passed_s: float) -> float:
+    def _contact(self, team: Sequence[PlaceRow], passed_s: float) -> float:
         """Returns the probability that a robot, a post or the wall around the field reaches the ball in a tick."""
         if not self._ball.known:
             return 0.0
         track, rivals = self._ball.track, self._opponents
         if self._walls.near(track, passed_s):
             return 1.0
-        places_m, places_m2 = team.at(self.clock.now_s)
-        robots = np.concatenate((np.concatenate((places_m, team.velocities_m_s), axis=1), rivals.states))
-        spreads_m2 = np.concatenate((places_m2, rivals.covariances[:, :2, :2]))
-        variances_m2 = (spreads_m2[:, 0, 0] + spreads_m2[:, 1, 1]) / 2
+        robots = [row[:4] for row in team] + rivals.states.tolist()
+        variances_m2 = [(row[4] + row[7]) / 2 for row in team]
+        variances_m2 += ((rivals.covariances[:, 0, 0] + rivals.covariances[:, 1, 1]) / 2).tolist()
         return touch_probability(track, robots, variances_m2, self._mouth_m, passed_s)
 
     def _see(self, robot: str, seen: Seen, age_s: float) -> None:
@@ -237,19 +238,21 @@ class WorldModel(Component):
                 self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
 
     def _holder(self, mates: list[Mate]) -> str:
-        """Returns the robot of the team that has the ball in its mouth, `?` for an opponent at the ball, or nothing."""
+        """Returns the robot of the team that has the ball in its mouth, `?` for an opponent at the ball, or nothing.
+
+        Ball and opponents are those of the message that was just filled in.
+        """
         if self.kicker_state.value.ball_held:
             return self._robot
         for mate in mates:
             if mate.holds_ball and self.clock.now_s - mate.told_s <= _HOLDER_S:
                 return mate.name
-        if self._ball.known and len(self._opponents.sure):
-            away_m = self._opponents.states[self._opponents.sure, :2] - self._ball.track.state[:2]
-            nearest_m = float(np.hypot(away_m[:, 0], away_m[:, 1]).min())
-            if nearest_m >= _NEAR_M:
-                return ""
-            covariance = self._ball.track.covariance
-            if nearest_m < self._mouth_m + 2 * math.sqrt(covariance[0, 0] + covariance[1, 1]):
+        ball, opponents = self.world_model.value.ball, self.world_model.value.opponents
+        if ball.known and opponents:
+            nearest_m = min(math.hypot(one.x_m - ball.x_m, one.y_m - ball.y_m) for one in opponents)
+            covariance = ball.covariance
+            near_m = self._mouth_m + 2 * math.sqrt(covariance[0][0] + covariance[1][1])
+            if nearest_m < min(_NEAR_M, near_m):
                 return "?"
         return ""
 
