@@ -233,22 +233,16 @@ class Host:
         if tick.tick != self._answered[0]:
             self._dones.clear()
         self._run_stage(tick, tick.step, stage)
-        answered = [tick.step]
         if stage in self._stages_ahead and tick.main_loop == NOBODY:
-            answered += self._run_ahead(tick, self._stages_ahead[stage])
-        for step in answered:
-            self._sender.publish(sync.DONE, self._dones[step], self._sync_port)
+            self._run_ahead(tick, self._stages_ahead[stage])
 
-    def _run_ahead(self, tick: tick_t, stages: Sequence[int]) -> list[int]:
+    def _run_ahead(self, tick: tick_t, stages: Sequence[int]) -> None:
         """Runs further stages of a tick on the same marks of other hosts and the new marks of this one.
 
-        If the process dies, none of the stages counts. A component that raises ends the process only when the tick
-        of its stage comes: by then the dones of the stages before have been taken.
-
-        Returns:
-            The stages that have been run.
+        A component that raises ends the process only when the tick of its stage comes: by then the dones of the stages
+        before have been taken.
         """
-        done, ran = self._message, list[int]()
+        done = self._message
         for stage in stages:
             if self._stopping():
                 break
@@ -258,15 +252,14 @@ class Host:
             except ComponentFailedError as error:
                 self._failed = error
                 break
-            ran.append(stage)
-        return ran
 
     def _run_stage(self, tick: tick_t, step: int, stage: int) -> None:
-        """Runs the iterations of a stage, sends what they wrote, and makes the done."""
+        """Runs the iterations of a stage; sends what they wrote, and the done."""
         names = self._names_of_stage[stage]
         done = self._message
         done.kind, done.tick, done.step, done.iteration = done_t.STAGE, tick.tick, step, 0
         self._finish(names, self.group.run(names, self._plan.stages[stage], tick, step))
+        self._sender.publish(sync.DONE, self._done, self._sync_port)
         self._catch_up.took_part(tick.tick)
         self._answered = tick.tick, step
 

@@ -116,13 +116,17 @@ class Barrier(ABC):
         """Keeps the done of a stage that has not begun yet, if the host may run that stage ahead."""
         place = done.tick, done.step
         if self.place < place <= host.ahead and done.kind == done_t.STAGE and done.incarnation == host.incarnation:
-            self._early.setdefault(place, {})[host.index] = done
+            kept = self._early.setdefault(place, {})
+            host.early += host.index not in kept
+            kept[host.index] = done
 
     def _take_early(self) -> None:
-        """Takes the dones of hosts that have run the beginning stage ahead."""
-        for done in self._early.pop(self.place, {}).values():
+        """Takes the dones of hosts that have run the beginning stage ahead, also of those that have died since."""
+        for index, done in self._early.pop(self.place, {}).items():
+            self._core.hosts[index].early -= 1
             self._core.events.emit(done)
         self._core.events.dispatch()
+        self._hosts.take_ends()
 
     def _runs_ahead(self, host: HostProcess) -> bool:
         """Returns whether a host runs the stage on the marks of an earlier one, without a tick."""
@@ -175,6 +179,8 @@ class Barrier(ABC):
             host = self._core.hosts[index]
             if host.must_leave and now_us >= host.asked_us + STUCK_US:
                 self._break_off(host, now_us)
+        if now_us >= began_us + STUCK_US:  # perhaps a host lacks a message of one that died
+            self._hosts.take_ends(also_early=True)
         if self._hosts.unsettled:
             self._hosts.enforce_timeouts()
             self._hosts.start_due()

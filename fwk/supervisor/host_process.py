@@ -98,6 +98,8 @@ class HostProcess:
     """Step of the ledger of the last tick that it was sent; its marks also hold for stages that it runs ahead."""
     ahead: tuple[int, int] = (0, -1)
     """Tick and last step that it runs on the marks of the last tick that it was sent."""
+    early: int = 0
+    """Number of its dones of stages that have not begun yet."""
     late_with: tuple[int, int] | None = None
     """Tick, and step of that tick, on which it still works after the end of the stage."""
     finalizing: bool = False
@@ -230,7 +232,7 @@ class HostProcess:
         self.actual_run, self.changes = self.desired_run, []
         self.reason = ""
         self.answered_step, self.late_with, self.pid = 0, None, 0
-        self.told_step, self.ahead = 0, (0, -1)
+        self.told_step, self.ahead, self.early = 0, (0, -1), 0
         self.held = self.finalizing = False
         self._starts_us.append(now_us)
         return self.incarnation

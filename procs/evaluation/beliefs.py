@@ -15,7 +15,8 @@ from procs.model.frames import Floats
 NEAR_M = 4.0
 """Distance from the observer to which published accuracies of ball and obstacles refer."""
 MOVING_M_S = 0.3
-_FLIES_M = 0.02
+FLIES_M = 0.02
+"""A ball that is higher than that above the ground counts as flying."""
 """A ball slower than that counts as resting."""
 SETTLED_S = 0.3
 """A ball without a touch or a bounce for that time rolls freely."""
@@ -48,7 +49,9 @@ class _Ball(NamedTuple):
     holder: str
     """`itself`, `another`, or empty: the robot that touches the ball."""
     settled: bool
-    """Nothing has touched or turned the ball for a moment, and it does not fly."""
+    """Nothing has touched or turned the ball for a moment."""
+    flies: bool
+    """The ball is in the air: no robot knows its height."""
 
 
 def believed(piece: Piece) -> Samples:
@@ -84,7 +87,7 @@ def _ball_samples(piece: Piece, interface: str = "world_model") -> Samples:
     def of(value: str, *, case: list[bool]) -> Floats:
         return np.array([getattr(each, value) for each, asked in zip(seen, case, strict=True) if asked], np.float64)
 
-    moving = [each.near and each.speed_m_s >= MOVING_M_S for each in seen]
+    moving = [each.near and not each.flies and each.speed_m_s >= MOVING_M_S for each in seen]
     rolling = [asked and each.settled for each, asked in zip(seen, moving, strict=True)]
     resting = [each.near and each.settled and each.speed_m_s < 0.01 for each in seen]
     every = [True] * len(seen)
@@ -94,6 +97,7 @@ def _ball_samples(piece: Piece, interface: str = "world_model") -> Samples:
         "ball moving, velocity": of("velocity_error_m2_s2", case=moving),
         "ball rolling freely, position": of("error_m2", case=rolling),
         "ball rolling freely, velocity": of("velocity_error_m2_s2", case=rolling),
+        "ball in the air, position": of("error_m2", case=[each.near and each.flies for each in seen]),
         "ball resting, position": of("error_m2", case=resting),
         "ball resting, velocity": of("velocity_error_m2_s2", case=resting),
         "inside 95 %, all": of("inside", case=every),
@@ -137,7 +141,8 @@ def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: grou
         math.dist((own.x_m, own.y_m), (truth.ball_x_m, truth.ball_y_m)) <= NEAR_M,
         math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s),
         "itself" if robot in touching else "another" if touching else "",
-        not bounced and not piece.touched_by(tick, SETTLED_S) and truth.ball_z_m < _FLIES_M,
+        not bounced and not piece.touched_by(tick, SETTLED_S),
+        truth.ball_z_m > FLIES_M,
     )
 
 

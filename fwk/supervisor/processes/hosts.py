@@ -55,6 +55,7 @@ class Hosts:
         self._asked: set[int] = set()  # hosts whose desired state was changed and that do not have it yet
         self._named: set[int] = set()  # hosts that were said to wait for others
         self._forwarders: dict[int, FetchForwarder] = {}
+        self._early_ends: list[Ended] = []  # of hosts whose dones of later stages have come
         self._external: dict[int, ExternalProcess] = {}
         core.events.watch(starter, self._read_starter)
         core.events.subscribe(actual_t, self._take_state)
@@ -273,8 +274,23 @@ class Hosts:
 
     def _take_end(self, event: Ended) -> None:
         host = self._core.hosts[event.host]
-        if event.incarnation == host.incarnation:
+        if event.incarnation != host.incarnation:
+            return
+        if host.early and not self._stopping:  # it died in a later stage than the running one
+            self._early_ends.append(event)
+        else:
             self._end(host, event.code, event.core)
+
+    def take_ends(self, also_early: bool = False) -> None:
+        """Takes the ends of processes that had run stages ahead, once these stages have begun."""
+        if not self._early_ends:
+            return
+        ends, self._early_ends = self._early_ends, []
+        for event in ends:
+            if also_early:
+                self._core.hosts[event.host].early = 0
+            self._core.events.emit(event)
+        self._core.events.dispatch()
 
     def _take_external_end(self, host: HostProcess, process: ExternalProcess) -> None:
         del self._external[host.index]

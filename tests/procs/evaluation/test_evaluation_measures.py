@@ -74,6 +74,16 @@ def test_ball_errors_are_those_of_the_estimate() -> None:
     found = believed(made)
     assert np.sqrt(found["ball rolling freely, position"].mean()) == pytest.approx(0.1)
     assert np.sqrt(found["ball moving, velocity"].mean()) == pytest.approx(1.0)  # the estimate says that it rests
+
+
+def test_ball_in_the_air_has_a_row_of_its_own() -> None:
+    made = piece([robot("cyan1", 0.0, 1.0), robot("magenta1", 9.0, 0.0)], ticks=20)
+    for tick in range(FIRST, FIRST + 5):
+        made.truth[tick].ball_z_m = 0.5
+    made.by_robot["world_model"] = {"cyan1": {tick: model((truth.ball_x_m, 0.1)) for tick, truth in made.truth.items()}}
+    found = believed(made)
+    assert len(found["ball in the air, position"]) == 5
+    assert len(found["ball moving, position"]) == len(found["ball rolling freely, position"]) == 15
     assert found["inside 95 %, all"].mean() == 1.0
     assert not len(found["ball resting, position"])
 
