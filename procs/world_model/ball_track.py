@@ -46,7 +46,7 @@ class Walls:
     net_x_m: float
     """In a goal, where the net takes the place of the wall."""
     goal_x_m: float
-    """Of the posts."""
+    """Place of the posts along the field."""
     goal_half_width_m: float
 
     @classmethod

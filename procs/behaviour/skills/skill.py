@@ -26,7 +26,7 @@ class Obstacle(NamedTuple):
 
 
 class Sight(NamedTuple):
-    """What the robot's own camera sees at the moment, in the robot frame: all that a lost robot knows."""
+    """Sight of the robot's own camera at the moment, in the robot frame: a lost robot knows nothing else."""
 
     obstacles: tuple[Obstacle, ...] = ()
     lines: tuple[Point, ...] = ()
@@ -83,7 +83,7 @@ class Step(NamedTuple):
     kick_m_s: float = 0.0
     """Above 0: kick now with that horizontal speed, relative to the robot."""
     elevation_rad: float = 0.0
-    """Of that kick; 0.0: along the ground."""
+    """Elevation of that kick; 0.0: along the ground."""
     status: Status = Status.RUNNING
     reason: str = ""
     blind: Blind | None = None
