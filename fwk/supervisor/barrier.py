@@ -123,7 +123,8 @@ class Barrier(ABC):
     def _take_early(self) -> None:
         """Takes the dones of hosts that have run the beginning stage ahead, also of those that have died since."""
         for index, done in self._early.pop(self.place, {}).items():
-            self._core.hosts[index].early -= 1
+            host = self._core.hosts[index]
+            host.early -= host.early > 0  # its end may have been taken already
             self._core.events.emit(done)
         self._core.events.dispatch()
         self._hosts.take_ends()

@@ -99,7 +99,7 @@ class RobotTracks:
         tracks, seen = np.array(rows, np.intp), np.array(columns, np.intp)
         inverses, determinants = inverted(spreads[tracks] + covariances_m2[seen])
         while len(tracks):
-            # From the states of these tracks alone: the product of more states may round otherwise.
+            # Only the states of these tracks are multiplied: a product of more states may round otherwise.
             differences_m = positions_m[seen] - places_at(self._x[tracks], age_s)
             found = innovation_of(gains[tracks], differences_m, inverses, determinants)
             fits = found.surprises <= _GATE
