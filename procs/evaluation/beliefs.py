@@ -15,8 +15,6 @@ from procs.model.frames import Floats
 NEAR_M = 4.0
 """Distance from the observer to which published accuracies of ball and obstacles refer."""
 MOVING_M_S = 0.3
-FLIES_M = 0.02
-"""A ball that is higher than that above the ground counts as flying."""
 """A ball slower than that counts as resting."""
 SETTLED_S = 0.3
 """A ball without a touch or a bounce for that time rolls freely."""
@@ -51,7 +49,8 @@ class _Ball(NamedTuple):
     settled: bool
     """Nothing has touched or turned the ball for a moment."""
     flies: bool
-    """The ball is in the air: no robot knows its height."""
+    """The ball is in the air."""
+    height_error_m2: float
 
 
 def believed(piece: Piece) -> Samples:
@@ -90,6 +89,7 @@ def _ball_samples(piece: Piece, interface: str = "world_model") -> Samples:
     moving = [each.near and not each.flies and each.speed_m_s >= MOVING_M_S for each in seen]
     rolling = [asked and each.settled for each, asked in zip(seen, moving, strict=True)]
     resting = [each.near and each.settled and each.speed_m_s < 0.01 for each in seen]
+    in_the_air = [each.near and each.flies for each in seen]
     every = [True] * len(seen)
     return {
         "ball known": np.array(known, np.float64),
@@ -97,7 +97,9 @@ def _ball_samples(piece: Piece, interface: str = "world_model") -> Samples:
         "ball moving, velocity": of("velocity_error_m2_s2", case=moving),
         "ball rolling freely, position": of("error_m2", case=rolling),
         "ball rolling freely, velocity": of("velocity_error_m2_s2", case=rolling),
-        "ball in the air, position": of("error_m2", case=[each.near and each.flies for each in seen]),
+        "ball in the air, position": of("error_m2", case=in_the_air),
+        "ball in the air, velocity": of("velocity_error_m2_s2", case=in_the_air),
+        "ball in the air, height": of("height_error_m2", case=in_the_air),
         "ball resting, position": of("error_m2", case=resting),
         "ball resting, velocity": of("velocity_error_m2_s2", case=resting),
         "inside 95 %, all": of("inside", case=every),
@@ -129,6 +131,11 @@ def _bounced(piece: Piece) -> set[int]:
     return ticks
 
 
+def flies(truth: ground_truth_t) -> bool:
+    """Returns whether the ball is above the ground, or bounces on it."""
+    return truth.ball_z_m > 0.0 or truth.ball_vz_m_s != 0.0
+
+
 def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: ground_truth_t, bounced: bool) -> _Ball:
     own, ball = piece.robot(tick, robot), model.ball
     error = np.array((ball.x_m - truth.ball_x_m, ball.y_m - truth.ball_y_m))
@@ -142,7 +149,8 @@ def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: grou
         math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s),
         "itself" if robot in touching else "another" if touching else "",
         not bounced and not piece.touched_by(tick, SETTLED_S),
-        truth.ball_z_m > FLIES_M,
+        flies(truth),
+        (ball.z_m - truth.ball_z_m) ** 2,
     )
 
 

@@ -76,6 +76,8 @@ MEASURES = [
     Measure("ball rolling freely, position", rms, "m", "<= 0.05"),
     Measure("ball rolling freely, velocity", rms, "m/s", "<= 0.15"),
     Measure("ball in the air, position", rms, "m", ""),
+    Measure("ball in the air, velocity", rms, "m/s", ""),
+    Measure("ball in the air, height", rms, "m", ""),
     Measure("ball resting, position", rms, "m", "<= 0.03"),
     Measure("ball resting, velocity", rms, "m/s", "<= 0.05"),
     Measure("one sighting, ball resting", rms, "m", ""),

@@ -6,7 +6,7 @@ from collections.abc import Set
 
 import numpy as np
 
-from procs.evaluation.beliefs import FLIES_M, MOVING_M_S, NEAR_M, Samples, models_of, placed_ticks
+from procs.evaluation.beliefs import MOVING_M_S, NEAR_M, Samples, models_of, placed_ticks
 from procs.evaluation.piece import Piece
 from procs.evaluation.poses import START_S
 from procs.model.frames import Floats
@@ -69,7 +69,7 @@ def _fusion(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
     average: list[tuple[float, float]] = []
     fused: dict[tuple[str, int], list[float]] = defaultdict(list)
     for robot, tick, model, truth in models_of(piece):
-        if model.ball.known and tick not in placed and truth.ball_z_m <= FLIES_M:
+        if model.ball.known and tick not in placed:
             error_m2 = (model.ball.x_m - truth.ball_x_m) ** 2 + (model.ball.y_m - truth.ball_y_m) ** 2
             fused[piece.team(robot), tick].append(error_m2)
     for (team, tick), errors_m2 in fused.items():

@@ -22,6 +22,8 @@ class PerceptErrors(BaseModel):
     """Growth of that deviation with each m/s of the robot."""
     ball_px: float = 0.0
     """Standard deviation of the ball's place."""
+    ball_area_px: float = 0.0
+    """Relative standard deviation of the ball's area, by which a ball in the air is known, times its radius."""
     robot_along_px: float = 0.0
     """Standard deviation of a robot's place along the ray from the camera."""
     robot_across_px: float = 0.0
@@ -57,6 +59,7 @@ PRESETS: dict[Realism, PerceptErrors] = {
         shake_px=0.1,
         shake_px_per_m_s=0.15,
         ball_px=0.1,
+        ball_area_px=0.08,
         robot_along_px=0.18,
         robot_across_px=0.42,
         line_px=0.05,
@@ -70,6 +73,7 @@ PRESETS: dict[Realism, PerceptErrors] = {
         shake_px=0.2,
         shake_px_per_m_s=0.3,
         ball_px=0.15,
+        ball_area_px=0.12,
         robot_along_px=0.35,
         robot_across_px=0.85,
         line_px=0.1,
@@ -85,6 +89,7 @@ PRESETS: dict[Realism, PerceptErrors] = {
         shake_px=0.4,
         shake_px_per_m_s=0.6,
         ball_px=0.3,
+        ball_area_px=0.24,
         robot_along_px=0.7,
         robot_across_px=1.7,
         line_px=0.3,

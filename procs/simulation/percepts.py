@@ -20,17 +20,15 @@ from procs.model.field import Field, Point
 from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
 from procs.model.robot import ROBOT, RobotModel
+from procs.simulation.ball_sight import LEAST_VISIBLE, BallSight
 from procs.simulation.delayed_truth import DelayedTruth
 from procs.simulation.gaps import Gaps
 from procs.simulation.line_scan import line_scan
 from procs.simulation.percept_errors import PRESETS
 from procs.simulation.sight import blurred, claimed, hidden, shaken
-from procs.vision.ball_finder import MOST_FIT
 from procs.vision.calibration import MirrorConfig
 
-_LEAST_VISIBLE = 0.4  # of a ball; ER-Force's threshold, too
-_CLAIMED_BALL_PX = 0.5  # deviations that the detectors state, shaking included
-_CLAIMED_ROBOT_PX = (0.6, 1.5)
+_CLAIMED_ROBOT_PX = (0.6, 1.5)  # deviations that the detector states, shaking included
 _TILT_SHARE = 0.8  # of a tilt by an angle: shift of what is a few metres away, as a part of the mirror's scale
 
 
@@ -47,6 +45,8 @@ class PerceptsConfig(Config):
     """Standard deviation by which the standing robot's mirror shakes."""
     ball_px: float | None = Setting(default=None, ge=0.0)
     """Standard deviation of the ball's place, in pixels."""
+    ball_area_px: float | None = Setting(default=None, ge=0.0)
+    """Relative standard deviation of the ball's area in the picture, times its radius in pixels."""
     ball_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the frames in which a visible ball is not found."""
     robot_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
@@ -135,55 +135,35 @@ class Percepts(Component):
         self._errors = chosen(PRESETS[self.config.realism], self.config)
         self._mirror = self.config.mirror.mirror()
         self._tilt_px = _TILT_SHARE * self._mirror.scale_px * math.radians(self._errors.tilt_sd_deg) * self._tilts
+        self._ball_sight = BallSight(self._mirror, self.config.ball.radius_m, self.config.ball_reach_m, self._errors)
         self._lines = line_scan(self.config.field)
 
     def _see_ball(
         self, own: true_robot_t, truth: ground_truth_t, robots_m: Floats, shake_px: tuple[float, float], passed_s: float
     ) -> None:
         errors, percept = self._errors, ball_percept_t()
-        missed, *noise = self.rng.random(), *self.rng.standard_normal(2)
+        missed, *noise = self.rng.random(), *self.rng.standard_normal(3)
         phantom, direction, distance = self.rng.random(3)
-        if plausible(truth.ball_x_m, truth.ball_y_m, truth.ball_z_m):
-            centre_m = (truth.ball_x_m, truth.ball_y_m)
-            at_m = _seen_from(own, np.array([centre_m]))
-            visible = 1.0 - float(hidden(at_m, robots_m, self.config.robot.radius_m)[0])
-            lengthened = self._lengthened(truth.ball_z_m)
-            at_m, fit = at_m * lengthened, visible * lengthened**2  # a ball in the air seems far away and large
-            range_m = float(np.hypot(*at_m[0]))
-            found = missed >= errors.ball_missed and _LEAST_VISIBLE <= fit <= MOST_FIT
-            if found and range_m <= self.config.ball_reach_m:
-                along, across = shaken(at_m, shake_px)
-                moved = blurred(
-                    self._mirror, at_m, along + errors.ball_px * noise[0], across + errors.ball_px * noise[1]
-                )
-                percept = self._ball(moved[0], min(fit, 1.0 / fit))
+        if plausible(truth.ball_x_m, truth.ball_y_m, truth.ball_z_m) and missed >= errors.ball_missed:
+            at_m = _seen_from(own, np.array([(truth.ball_x_m, truth.ball_y_m)]))
+            hidden_part = float(hidden(at_m, robots_m, self.config.robot.radius_m)[0])
+            covered = 0.0 if truth.ball_z_m > self.config.robot.height_m else hidden_part
+            percept = self._ball_sight.found(at_m, truth.ball_z_m, 1.0 - covered, shake_px, noise)
         if not percept.visible and phantom < -math.expm1(-errors.ball_phantoms_1_s * passed_s):
             range_m, angle_rad = 0.5 + distance * (self.config.ball_reach_m - 0.5), direction * math.tau
-            percept = self._ball(range_m * np.array((math.cos(angle_rad), math.sin(angle_rad))), _LEAST_VISIBLE)
+            x_m, y_m = range_m * math.cos(angle_rad), range_m * math.sin(angle_rad)
+            percept = self._ball_sight.on_ground(x_m, y_m, LEAST_VISIBLE)
         if not percept.visible and self._mouth_rng.random() < -math.expm1(-errors.mouth_phantoms_1_s * passed_s):
             in_mouth_m = self.config.robot.held_ball_m(self.config.ball)
-            percept = self._ball(np.array((in_mouth_m, 0.0)), _LEAST_VISIBLE)
+            percept = self._ball_sight.on_ground(in_mouth_m, 0.0, LEAST_VISIBLE)
         self.ball_percept.value = percept
-
-    def _lengthened(self, height_m: float) -> float:
-        """Returns the factor by which a ball above the ground appears further away than it is."""
-        viewpoint_m = self.config.mirror.height_m - self.config.ball.radius_m
-        return viewpoint_m / max(viewpoint_m - height_m, 1e-3)
-
-    def _ball(self, at_m: Floats, confidence: float) -> ball_percept_t:
-        percept = ball_percept_t()
-        percept.visible, percept.confidence = True, confidence
-        percept.x_m, percept.y_m = at_m.tolist()
-        deviation_px = _CLAIMED_BALL_PX + 2.0 * max(0.0, 0.9 - confidence)
-        percept.covariance_m2 = claimed(self._mirror, percept.x_m, percept.y_m, deviation_px, deviation_px)
-        return percept
 
     def _see_robots(self, robots_m: Floats, shake_px: tuple[float, float], passed_s: float) -> None:
         errors, config = self._errors, self.config
         found_m = robots_m[np.hypot(robots_m[:, 0], robots_m[:, 1]) <= config.reach_m]
         luck, noise = self.rng.random(len(found_m)), self.rng.standard_normal((2, len(found_m)))
         phantom, direction, distance = self.rng.random(3)
-        seen = (luck >= errors.robot_missed) & (hidden(found_m, robots_m, config.robot.radius_m) < 1 - _LEAST_VISIBLE)
+        seen = (luck >= errors.robot_missed) & (hidden(found_m, robots_m, config.robot.radius_m) < 1 - LEAST_VISIBLE)
         along, across = shaken(found_m, shake_px)
         moved_m = blurred(
             self._mirror, found_m, along + errors.robot_along_px * noise[0], across + errors.robot_across_px * noise[1]

@@ -1,4 +1,8 @@
-"""Finds the ball in an omnidirectional picture: colour, shape, then its place on the ground to a part of a pixel."""
+"""Finds the ball in an omnidirectional picture: colour, shape, then its place to a part of a pixel.
+
+A ball on the ground has one size at each place of the picture. A larger one is nearer than it seems: it is in the air,
+at the distance that its size tells.
+"""
 
 import math
 from dataclasses import dataclass
@@ -10,13 +14,16 @@ from procs.model.algebra import Floats, median, weighted_mean
 from procs.model.ball import BALL
 from procs.vision.colours import ColourRange, Mask, Picture, to_hsv
 from procs.vision.mirror import Mirror
-from procs.vision.uncertainty import ground_covariance
+from procs.vision.uncertainty import ground_covariance, sphere_covariance
 
 _STEP_PX = 2  # the first search looks at every second pixel of every second row
 _CANDIDATES = 4
 _LEAST_SOLID = 0.5  # of a blob's area must be of the ball's colour; the rest is its rim
 _MOST_SPREAD = 1.6  # mean square distance of a blob's pixels from its middle, compared with a disc's
 _FAINT = 0.15  # pixels covered by the ball to a smaller part than this count as noise
+AREA_PX = 0.2  # relative deviation of an area, times the radius in the picture
+_NEAREST_M = 0.3  # from the viewpoint: nearer is nothing but the robot itself
+IN_THE_AIR = 0.8  # confidence of a ball that flies, as few do
 
 
 @dataclass(frozen=True)
@@ -25,14 +32,17 @@ class BallSighting:
 
     x_m: float
     y_m: float
+    z_m: float
+    """Of the lowest point; 0: on the ground."""
     covariance_m2: Floats
-    """2 x 2: one standard deviation is what the measured errors are at that distance."""
+    """2 x 2, of x and y: one standard deviation is what the measured errors are at that distance."""
     confidence: float
-    """0..1: how well the blob's size fits a ball that lies there."""
+    """0..1: how well the blob's size fits a ball that lies there; smaller for a ball in the air."""
 
 
-MOST_FIT = 1.6
-"""Area of a ball a fifth as high as the camera, by that of a ball on the ground where it seems to lie."""
+def most_fit(radius_px: float) -> float:
+    """Returns the largest area of a ball on the ground, by that which its radius in the picture there makes likely."""
+    return 1.08 + 0.4 / radius_px
 
 
 @dataclass(frozen=True)
@@ -47,7 +57,7 @@ class _Blob:
 
 @dataclass(frozen=True)
 class BallFinder:
-    """Finds the ball of a known colour and size, lying on the ground."""
+    """Finds the ball of a known colour and size, on the ground or above it."""
 
     mirror: Mirror
     colour: ColourRange
@@ -56,8 +66,6 @@ class BallFinder:
     """Standard deviation of the found centre."""
     least_fit: float = 0.4
     """Least ratio of the areas of blob and ball, of which robots may hide a part; smaller blobs are not balls."""
-    most_fit: float = MOST_FIT
-    """Largest ratio; a larger blob is no ball on the ground, but perhaps one in the air, nearer than it seems."""
     farthest_m: float = 8.0
     """Beyond that nothing is taken for a ball."""
 
@@ -94,17 +102,36 @@ class BallFinder:
 
     def _sighting(self, blob: _Blob | None) -> BallSighting | None:
         """Returns the ball at a blob; None if size or shape do not fit."""
-        place = None if blob is None else self._locate(blob.column, blob.row)
-        if blob is None or place is None or math.hypot(*place[:2]) > self.farthest_m:
+        if blob is None:
             return None
-        x_m, y_m, expected_px = place
-        fit = blob.area_px / (math.pi * expected_px**2)
+        place = self._locate(blob.column, blob.row)
+        if place is not None:
+            x_m, y_m, expected_px = place
+            fit = blob.area_px / (math.pi * expected_px**2)
+            if fit <= most_fit(expected_px):
+                return self._on_ground(blob, x_m, y_m, expected_px, fit)
+        return self._in_the_air(blob)
+
+    def _on_ground(self, blob: _Blob, x_m: float, y_m: float, expected_px: float, fit: float) -> BallSighting | None:
+        """Returns the ball on the ground whose expected radius and area a blob fits so well, if it does."""
         confidence = min(fit, 1 / fit)
-        if confidence < self.least_fit or fit > self.most_fit or blob.spread_px2 > _MOST_SPREAD * expected_px**2 / 2:
+        if math.hypot(x_m, y_m) > self.farthest_m or confidence < self.least_fit or not _is_round(blob, expected_px):
             return None
         # What is hidden shifts the centre by up to as much of the radius.
         deviation_px = self.deviation_px + expected_px * max(1.0 - fit - 0.1, 0.0) / 2
-        return BallSighting(x_m, y_m, ground_covariance(self.mirror, x_m, y_m, deviation_px), confidence)
+        return BallSighting(x_m, y_m, 0.0, ground_covariance(self.mirror, x_m, y_m, deviation_px), confidence)
+
+    def _in_the_air(self, blob: _Blob) -> BallSighting | None:
+        """Returns the ball in the air that has the size of a blob."""
+        radius_px = math.sqrt(blob.area_px / math.pi)
+        if not self.mirror.shows_all(blob.column, blob.row, radius_px):
+            return None
+        x_m, y_m, z_m = centre_m = self.mirror.centre_of(blob.column, blob.row, radius_px, self.radius_m)
+        near = math.hypot(x_m, y_m, z_m - self.mirror.height_m) < _NEAREST_M
+        if near or math.hypot(x_m, y_m) > self.farthest_m or not _is_round(blob, radius_px):
+            return None
+        covariance_m2 = sphere_covariance(self.mirror, centre_m, AREA_PX / radius_px, self.deviation_px)
+        return BallSighting(x_m, y_m, max(0.0, z_m - self.radius_m), covariance_m2, IN_THE_AIR)
 
     def _locate(self, column: float, row: float) -> tuple[float, float, float] | None:
         """Returns the ball on the ground whose circle has that centre: x, y in metres, radius in pixels."""
@@ -118,6 +145,11 @@ class BallFinder:
             looked_at = looked_at + wanted - centre
         x_m, y_m = self.mirror.ground(looked_at[None], self.radius_m)[0]
         return (float(x_m), float(y_m), radius_px) if math.isfinite(x_m) else None
+
+
+def _is_round(blob: _Blob, radius_px: float) -> bool:
+    """Returns whether a blob spreads no further than a disc of a radius."""
+    return blob.spread_px2 <= _MOST_SPREAD * radius_px**2 / 2
 
 
 def _cover(window: Picture, solid: Mask) -> Floats:

@@ -66,6 +66,20 @@ class Mirror:
         column, row = self._pixels(ray[None, :2] / (distance_m * spread))[0]
         return float(column), float(row), self.scale_px * sine / spread
 
+    def shows_all(self, column: float, row: float, radius_px: float) -> bool:
+        """Returns whether a circle lies within the mirror's round picture."""
+        return math.hypot(column - self.centre_px, row - self.centre_px) + radius_px < self.size_px / 2
+
+    def centre_of(self, column: float, row: float, radius_px: float, radius_m: float) -> tuple[float, float, float]:
+        """Returns the centre (x, y, z) of a sphere of known radius that appears as this circle; undoes `sphere`."""
+        offsets = (self.centre_px - np.array((row, column))) / self.scale_px
+        squared, circle = float(offsets @ offsets), radius_px / self.scale_px
+        down = (squared - circle * circle - 1.0) / 2.0
+        spread = 1.0 / math.sqrt(squared + down * down)
+        ray = product(np.array([(*(spread * offsets), spread * down)]), self._from_mirror.T)[0]
+        x_m, y_m, z_m = (radius_m / (circle * spread) * ray).tolist()
+        return x_m, y_m, z_m + self.height_m
+
     def ground(self, pixels: Floats, plane_m: float = 0.0) -> Floats:
         """Points (n, 2) of the robot frame that pixels (n, 2) see in the level plane at height `plane_m`.
 

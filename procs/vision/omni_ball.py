@@ -52,7 +52,7 @@ class OmniBall(Detector):
         percept.capture_us = self.capture_us
         if ball is not None:
             percept.visible = True
-            percept.x_m, percept.y_m = ball.x_m, ball.y_m
+            percept.x_m, percept.y_m, percept.z_m = ball.x_m, ball.y_m, ball.z_m
             percept.covariance_m2 = ball.covariance_m2.tolist()
             percept.confidence = ball.confidence
         self.ball_percept.write()

@@ -11,48 +11,28 @@ ux, uy in m/s, world frame, and the carpet, a factor of both decelerations, whic
 """
 
 import math
-from enum import IntEnum
-from functools import lru_cache
 
 import numpy as np
 
-from procs.model.ball import ROLLING_SHARE, SLIDING_M_S2
+from procs.model.ball import ROLLING_SHARE
 from procs.model.frames import Floats
+from procs.world_model.ball_modes import MODES, STATES, Mode, noise, passes
 from procs.world_model.batch import corrected, innovation
+from procs.world_model.carpet_friction import rubbed
 
-
-class Mode(IntEnum):
-    """Motion models."""
-
-    RESTS = 0
-    FREE = 1
-    HANDLED = 2
-    HIT = 3
-
-
-_MODES = len(Mode)
-_STATES = 7
+_FOUR = np.arange(4)
 _MOVING = (Mode.FREE, Mode.HANDLED, Mode.HIT)
-_EACH = np.arange(_MODES)
 _PLACE, _VELOCITY, _SETTLED, _CARPET = slice(0, 2), slice(2, 4), slice(4, 6), 6
 _SLIP = np.array([7 * row + column for row, column in ((2, 2), (3, 3), (4, 4), (5, 5), (2, 4), (3, 5))])
 """Places in a flat covariance of the parts that the variance of the slip, velocity minus settled velocity, has."""
 _SPUN_SHARE = 1.0 - ROLLING_SHARE  # of the velocity at which the ball would roll with its spin, in the settled one
-_STILL = np.tile(np.eye(_STATES), (_MODES, 1, 1))
+_STILL = np.tile(np.eye(STATES), (MODES, 1, 1))
 """Derivatives of states that stay, but for the velocities of a resting ball."""
 _STILL[Mode.RESTS, 2:6] = 0.0
-_TINY = 1e-9
-_LEAST_CARPET = 0.3
-_NOISE_M2_S3 = np.array((0.0001, 0.002, 5.0, 0.01))
-"""Spectral density of the acceleration that each model leaves open."""
-_SPIN_NOISE_M2_S3 = 0.002  # the same for the settled velocity
-_HIT_M_S = 8.0  # deviation of the velocity that a hit adds
-_HIT_SPIN_M_S = 0.3  # deviation of the settled velocity by the spin that a hit adds
 _SLOW_M_S = 0.15  # a free ball this slow is about to rest
 _UNKNOWN_SPEED_M_S = 3.0
 _UNKNOWN_SLIP_M_S = 0.8
 _CARPET_SD = 0.18  # published decelerations differ by a third
-_CARPET_NOISE_1_S = 1e-5
 _CLUTTER_1_M2 = 4e-3  # density of false sightings; a sighting that is less probable does not fit
 _LEAST = 1e-6  # probability that every model keeps
 _KICK_SPEED_SD = 0.06  # relative error of a kick's speed
@@ -60,26 +40,7 @@ _KICK_DIRECTION_SD = 0.03  # rad
 _KICK_TIME_SD_S = 0.012  # the kick lies somewhere in the tick before its report: 40 ms by the root of 12
 _SPIN_SD_M_S = 1.0  # deviation of the spin from that of a rolling ball, before the track is asked
 _HELD_SPIN_M_S = 0.4  # deviation of the spin of a ball in a mouth, which follows the robot late
-_FREE_1_S = np.array(
-    (
-        (0.0, 0.02, 0.003, 0.003),
-        (0.02, 0.0, 0.003, 0.003),
-        (0.5, 8.0, 0.0, 0.5),
-        (0.0, 0.0, 0.0, 0.0),
-    )
-)
-"""Rates of passing from one model (row) to another (column) without a robot near the ball; `HIT` lasts one step."""
-_CONTACT_1_S = np.array(
-    (
-        (0.0, 0.1, 1.5, 0.8),
-        (0.02, 0.0, 3.0, 1.6),
-        (0.3, 1.5, 0.0, 1.6),
-        (0.0, 0.0, 0.0, 0.0),
-    )
-)
-"""The same with a robot or a wall within reach."""
 _LEVELS = 20  # to which the probability of a contact is rounded
-_AFTER_HIT = np.array((0.0, 0.85, 0.15, 0.0))
 _FIRST = np.array((0.3, 0.45, 0.2, 0.05))
 
 
@@ -89,10 +50,10 @@ class BallFilter:
     def __init__(self, position_m: Floats, covariance_m2: Floats) -> None:
         """Starts from one sighting (2) with its covariance (2, 2); the velocity is unknown."""
         # Copies share arrays: methods replace them, or change those that they have just made.
-        self._x = np.zeros((_MODES, _STATES))
+        self._x = np.zeros((MODES, STATES))
         self._x[:, _PLACE] = position_m
         self._x[:, _CARPET] = 1.0
-        self._p = np.zeros((_MODES, _STATES, _STATES))
+        self._p = np.zeros((MODES, STATES, STATES))
         self._p[:, _PLACE, _PLACE] = covariance_m2
         moves = self._p[1:]
         moves[:, _VELOCITY, _VELOCITY] = np.eye(2) * _UNKNOWN_SPEED_M_S**2
@@ -143,32 +104,36 @@ class BallFilter:
         self._p[:, _CARPET] = self._p[:, :, _CARPET] = 0.0
         self._p[:, _CARPET, _CARPET] = carpet[1]
 
-    def predict(self, duration_s: float, rolling_m_s2: float, contact: float = 0.0) -> None:
+    def predict(
+        self, duration_s: float, rolling_m_s2: float, contact: float = 0.0, grounded_s: float | None = None
+    ) -> None:
         """Moves the ball on by `duration_s`.
 
         Args:
             duration_s: the step.
             rolling_m_s2: deceleration of the rolling ball on the usual carpet.
             contact: probability that a robot, a post or a wall reaches the ball.
+            grounded_s: part of the step in which the carpet acts on the ball; None: all of it.
         """
+        grounded_s = duration_s if grounded_s is None else grounded_s
         _, _, vx_m_s, vy_m_s, ux_m_s, uy_m_s, _ = self._x[Mode.FREE].tolist()
         slow = max(math.hypot(vx_m_s, vy_m_s), math.hypot(ux_m_s, uy_m_s)) < _SLOW_M_S
-        self._mix(_passes(duration_s, round(contact * _LEVELS) / _LEVELS, slow))
-        motion = self._rub(duration_s, rolling_m_s2)
+        self._mix(passes(duration_s, round(contact * _LEVELS) / _LEVELS, slow, grounded_s <= 0.0))
+        motion = self._rub(duration_s, grounded_s, rolling_m_s2)
         self._mixture = None
-        self._p = motion @ self._p @ motion.transpose(0, 2, 1) + _noise(duration_s)
+        self._p = motion @ self._p @ motion.transpose(0, 2, 1) + noise(duration_s)
 
-    def _rub(self, duration_s: float, rolling_m_s2: float) -> Floats:
+    def _rub(self, duration_s: float, grounded_s: float, rolling_m_s2: float) -> Floats:
         """Lets the ball move and the carpet act on it; returns the derivatives (modes, 7, 7) of the new states."""
         resting, *moving = self._x.tolist()
         states, rows = [*resting[:2], 0.0, 0.0, 0.0, 0.0, resting[_CARPET]], []
-        slips = self._p.reshape(_MODES, -1)[1:, _SLIP].tolist()
+        slips = self._p.reshape(MODES, -1)[1:, _SLIP].tolist()
         for mode, state, (vx_vx, vy_vy, ux_ux, uy_uy, vx_ux, vy_uy) in zip(_MOVING, moving, slips, strict=True):
             slip_m2_s2 = vx_vx + vy_vy + ux_ux + uy_uy - 2.0 * (vx_ux + vy_uy)
-            moved, derivatives = _rubbed(mode, state, slip_m2_s2 / 2.0, duration_s, rolling_m_s2)
+            moved, derivatives = rubbed(mode, state, slip_m2_s2 / 2.0, duration_s, grounded_s, rolling_m_s2)
             states += moved
             rows += derivatives
-        self._x = np.array(states).reshape(_MODES, _STATES)
+        self._x = np.array(states).reshape(MODES, STATES)
         motion = _STILL.copy()
         motion[1:, :_CARPET, 2:] = np.array(rows).reshape(len(_MOVING), _CARPET, -1)
         return motion
@@ -259,26 +224,26 @@ class BallFilter:
     def _set(self, state: Floats, covariance: Floats, spin_m_s: Floats, spin_m2_s2: Floats) -> None:
         """Sets all models to one state (4) with its covariance (4, 4), and one spin (2) with its covariance (2, 2)."""
         factor, variance = self.carpet
-        to_all = np.zeros((_STATES, 4))
-        to_all[_EACH[:4], _EACH[:4]] = 1.0
+        to_all = np.zeros((STATES, 4))
+        to_all[_FOUR, _FOUR] = 1.0
         to_all[4, 2] = to_all[5, 3] = ROLLING_SHARE
         x, p = to_all @ state, to_all @ covariance @ to_all.T
         x[_SETTLED] += _SPUN_SHARE * spin_m_s
         p[_SETTLED, _SETTLED] += _SPUN_SHARE**2 * spin_m2_s2
         x[_CARPET], p[_CARPET, _CARPET] = factor, variance
-        self._x, self._p = np.tile(x, (_MODES, 1)), np.tile(p, (_MODES, 1, 1))
+        self._x, self._p = np.tile(x, (MODES, 1)), np.tile(p, (MODES, 1, 1))
 
     def _become(self, mode: Mode) -> None:
         self._mixture = None
-        self._weights = np.full(_MODES, _LEAST)
-        self._weights[mode] = 1.0 - _LEAST * (_MODES - 1)
+        self._weights = np.full(MODES, _LEAST)
+        self._weights[mode] = 1.0 - _LEAST * (MODES - 1)
 
     def _moments(self) -> tuple[Floats, Floats]:
         """Returns mean (7) and covariance (7, 7) of the mixture, which are computed once."""
         if self._mixture is None:
             mean = self._weights @ self._x
             apart = self._x - mean
-            within = (self._weights @ self._p.reshape(_MODES, -1)).reshape(_STATES, _STATES)
+            within = (self._weights @ self._p.reshape(MODES, -1)).reshape(STATES, STATES)
             self._mixture = mean, within + (apart.T * self._weights) @ apart
         return self._mixture
 
@@ -289,103 +254,5 @@ class BallFilter:
         mixed = shares @ self._x
         apart = self._x[None] - mixed[:, None]
         spread = (apart * shares[:, :, None]).transpose(0, 2, 1) @ apart
-        self._p = (shares @ self._p.reshape(_MODES, -1)).reshape(_MODES, _STATES, _STATES) + spread
+        self._p = (shares @ self._p.reshape(MODES, -1)).reshape(MODES, STATES, STATES) + spread
         self._x, self._weights = mixed, weights / weights.sum()
-
-
-def _rubbed(
-    mode: Mode, state: list[float], slip_m2_s2: float, duration_s: float, rolling_m_s2: float
-) -> tuple[list[float], list[float]]:
-    """Lets the carpet act on a moving ball for a step.
-
-    The direction of the slip is that of a normal distribution: it fades where the slip is uncertain, and where the slip
-    ends within the step. In a mouth friction turns the ball instead of braking it.
-
-    Args:
-        mode: the model.
-        state: (7).
-        slip_m2_s2: variance of the slip along an axis.
-        duration_s: the step.
-        rolling_m_s2: deceleration of the rolling ball on the usual carpet.
-
-    Returns:
-        The new state (7), and the derivatives (6, 5) of its first six values by the last five of the old one, row
-        after row.
-    """
-    x_m, y_m, vx_m_s, vy_m_s, ux_m_s, uy_m_s, carpet = state
-    slip_x_m_s, slip_y_m_s = vx_m_s - ux_m_s, vy_m_s - uy_m_s
-    per_carpet_m_s = SLIDING_M_S2 * duration_s
-    step_m_s = per_carpet_m_s * carpet
-    slip2_m2_s2 = slip_x_m_s * slip_x_m_s + slip_y_m_s * slip_y_m_s
-    scale = 1.0 / math.sqrt(slip2_m2_s2 + max(0.0, slip_m2_s2) + step_m_s * step_m_s + _TINY)
-    along_x, along_y, turn = slip_x_m_s * scale, slip_y_m_s * scale, step_m_s * scale
-    xx, xy, yy = turn * (1.0 - along_x * along_x), -turn * along_x * along_y, turn * (1.0 - along_y * along_y)
-    if mode is Mode.HANDLED:
-        step_m_s, per_carpet_m_s = ROLLING_SHARE * step_m_s, ROLLING_SHARE * per_carpet_m_s
-        xx, xy, yy = ROLLING_SHARE * xx, ROLLING_SHARE * xy, ROLLING_SHARE * yy
-        wx_m_s, wy_m_s = vx_m_s, vy_m_s
-        ux_m_s, uy_m_s = ux_m_s + step_m_s * along_x, uy_m_s + step_m_s * along_y
-        by_velocity = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
-        by_settled = [xx, xy, 1.0 - xx, -xy, per_carpet_m_s * along_x, xy, yy, -xy, 1.0 - yy, per_carpet_m_s * along_y]
-    else:
-        speed_m_s = math.hypot(ux_m_s, uy_m_s) + _TINY
-        share = rolling_m_s2 * duration_s * (1.0 - math.sqrt(slip2_m2_s2) * scale) / speed_m_s  # that rolling takes
-        by_x_m_s, by_y_m_s = share * ux_m_s, share * uy_m_s
-        lost = min(1.0, share * carpet)
-        wx_m_s = vx_m_s - step_m_s * along_x - lost * ux_m_s
-        wy_m_s = vy_m_s - step_m_s * along_y - lost * uy_m_s
-        ux_m_s, uy_m_s = (1.0 - lost) * ux_m_s, (1.0 - lost) * uy_m_s
-        slid_x_m_s, slid_y_m_s = -per_carpet_m_s * along_x - by_x_m_s, -per_carpet_m_s * along_y - by_y_m_s
-        by_velocity = [1.0 - xx, -xy, xx, xy, slid_x_m_s, -xy, 1.0 - yy, xy, yy, slid_y_m_s]
-        by_settled = [0.0, 0.0, 1.0, 0.0, -by_x_m_s, 0.0, 0.0, 0.0, 1.0, -by_y_m_s]
-    half_s = duration_s / 2.0
-    by_place = [half_s * each for each in by_velocity]
-    by_place[0] += half_s
-    by_place[6] += half_s
-    x_m, y_m = x_m + half_s * (vx_m_s + wx_m_s), y_m + half_s * (vy_m_s + wy_m_s)
-    moved = [x_m, y_m, wx_m_s, wy_m_s, ux_m_s, uy_m_s, max(_LEAST_CARPET, carpet)]
-    return moved, [*by_place, *by_velocity, *by_settled]
-
-
-@lru_cache(maxsize=128)
-def _passes(duration_s: float, contact: float, slow: bool) -> Floats:
-    """Returns the probabilities (old, new) of passing from model to model; cached.
-
-    Args:
-        duration_s: the step.
-        contact: probability that a robot or a wall reaches the ball.
-        slow: a free ball is about to rest.
-    """
-    rates_1_s = contact * _CONTACT_1_S + (1.0 - contact) * _FREE_1_S
-    if slow:
-        rates_1_s[Mode.FREE, Mode.RESTS] = 3.0
-    leaves_1_s = rates_1_s.sum(axis=1) + 1e-9
-    stays = np.exp(-leaves_1_s * duration_s)
-    moves = rates_1_s * ((1.0 - stays) / leaves_1_s)[:, None]
-    moves[_EACH, _EACH] = stays
-    moves[Mode.HIT] = _AFTER_HIT
-    return np.asarray(moves)
-
-
-@lru_cache(maxsize=32)
-def _noise(duration_s: float) -> Floats:
-    """Returns the covariances (modes, 7, 7) that the models' accelerations add in a step; cached."""
-    along = np.array((duration_s**3 / 3, duration_s**2 / 2, duration_s))
-    matrices = np.zeros((_MODES, _STATES, _STATES))
-    for mode in Mode:
-        place, both, velocity = _NOISE_M2_S3[mode] * along
-        if mode is Mode.HIT:
-            place, both, velocity = _HIT_M_S**2 * np.array((duration_s**2 / 3, duration_s / 2, 1.0))
-        share = ROLLING_SHARE if mode in (Mode.HIT, Mode.HANDLED) else 0.0
-        spin = _HIT_SPIN_M_S**2 if mode is Mode.HIT else _SPIN_NOISE_M2_S3 * duration_s
-        if mode is Mode.RESTS:
-            place, both, velocity, spin = _NOISE_M2_S3[mode] * duration_s, 0.0, 1e-4, 1e-4
-        for axis in (0, 1):
-            axes = np.array((axis, axis + 2, axis + 4))
-            matrices[mode][np.ix_(axes, axes)] = (
-                (place, both, share * both),
-                (both, velocity, share * velocity),
-                (share * both, share * velocity, share**2 * velocity + spin),
-            )
-        matrices[mode, _CARPET, _CARPET] = _CARPET_NOISE_1_S * duration_s
-    return matrices

@@ -23,6 +23,7 @@ from procs.model.field import Field
 from procs.model.frames import Floats
 from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
+from procs.world_model.flight import Flight
 from procs.world_model.seen import Seen
 
 _SECOND_SIGHT_US = 300_000
@@ -35,6 +36,7 @@ _POST_M = 0.2  # a ball touches a post at most that far from it
 _MARGIN_M, _MOST_M = 0.05, 0.2  # of a ball near a wall; a less certain place counts as if it were that certain
 _HELD_M = 0.03  # deviation of a held ball's place in the mouth
 _HELD_M_S = 0.1
+_SEEMS_FURTHER = 0.06  # share of its distance by which a ball in the air that seems to lie appears too far away
 
 
 @dataclass(frozen=True)
@@ -90,6 +92,17 @@ class Sighting:
     position_m: Floats
     covariance_m2: Floats
     age_s: float = 0.0
+    height_m: float = 0.0
+    """Of the ball's lowest point; 0: it seems to lie on the ground."""
+    observer_m: Floats | None = None
+    """(2): place of the robot, if it is known."""
+
+    def of_flying_m2(self) -> Floats:
+        """Returns the covariance (2, 2) of the place of a ball that flies, perhaps so low that it seems to lie."""
+        if self.height_m > 0.0 or self.observer_m is None:
+            return self.covariance_m2
+        too_far_m = _SEEMS_FURTHER * (self.position_m - self.observer_m)
+        return self.covariance_m2 + np.outer(too_far_m, too_far_m)
 
     @property
     def weakness(self) -> float:
@@ -125,37 +138,62 @@ class BallTrack:
     """Exposures and sightings that did not fit."""
     carpet: tuple[float, float] | None = None
     """Carpet that the last filter learnt, if the ball is not known."""
+    flight: Flight | None = None
+    """None while the ball is on the ground."""
 
     def moved(self, time_us: int, step: Step) -> "BallTrack":
         """Returns the track at a later time; this one stays as it is."""
         if self.filter is None or time_us - self.seen_us > step.timeout_us:
             return BallTrack(time_us, None, self.seen_us, carpet=self._carpet())
-        ball = self.filter.copy()
-        ball.predict((time_us - self.time_us) / US_PER_S, step.rolling_m_s2, step.contact)
-        if step.walls is not None:
-            step.walls.contain(ball)
         doubts = self.doubts and tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= _SECOND_SIGHT_US)
-        return BallTrack(time_us, ball, self.seen_us, self.confirmed.copy(), doubts)
+        made = BallTrack(time_us, self.filter.copy(), self.seen_us, self.confirmed.copy(), doubts, flight=self.flight)
+        made._advance((time_us - self.time_us) / US_PER_S, step)
+        return made
+
+    def _advance(self, duration_s: float, step: Step) -> None:
+        """Moves a known ball on."""
+        assert self.filter is not None
+        grounded_s = duration_s
+        if self.flight is not None:
+            self.flight, grounded_s = self.flight.moved(duration_s)
+        self.filter.predict(duration_s, step.rolling_m_s2, step.contact, grounded_s)
+        if step.walls is not None:
+            step.walls.contain(self.filter)
 
     def see(self, sighting: Sighting, rolling_m_s2: float) -> None:
         """Takes a sighting that was captured at the time of the track."""
         if self.filter is None:
             self._begin(sighting)
-        elif self.filter.see(sighting.position_m, sighting.covariance_m2):
+        elif self._fits(sighting):
             self._confirm(sighting)
         elif not self._overruled(sighting):
             self._doubt(sighting, rolling_m_s2)
+
+    def _fits(self, sighting: Sighting) -> bool:
+        """Takes a sighting of a known ball; returns False if it does not fit."""
+        assert self.filter is not None
+        if self.flight is None:
+            if not self.filter.see(sighting.position_m, sighting.covariance_m2):
+                return False
+            self.flight = Flight.of_sight(sighting.height_m, rises=True)
+            return True
+        flight = self.flight.seen(sighting.height_m)
+        if flight is None or not self.filter.see(sighting.position_m, sighting.of_flying_m2()):
+            return False
+        self.flight = flight
+        return True
 
     def hold(self, robot: str, state: Floats, covariance: Floats) -> None:
         """Takes a ball in the own mouth; see `BallTracker.hold`."""
         if self.filter is None or np.hypot(*(self.filter.state[:2] - state[:2])) > 0.3:
             self.filter = self._new(state[:2], np.eye(2) * 0.05**2 + covariance[:2, :2])
         self.filter.hold(state, covariance + np.diag(np.square((_HELD_M, _HELD_M, _HELD_M_S, _HELD_M_S))))
+        self.flight = None
         self.confirmed = {robot: (self.time_us, 0.0)}
         self.seen_us = self.time_us
         self.doubts = ()
 
-    def kick(self, velocity_m_s: Floats, mouth: Seen) -> None:
+    def kick(self, velocity_m_s: Floats, lift_m_s: float, mouth: Seen) -> None:
         """Takes a kick at the time of the track; see `BallTracker.kick`."""
         if len(mouth.positions_m):
             place = mouth.positions_m[0], mouth.covariances_m2[0]
@@ -165,6 +203,7 @@ class BallTrack:
             self.seen_us = self.time_us
         elif self.filter is not None:
             self.filter.kick(velocity_m_s)
+        self.flight = Flight.of_kick(lift_m_s)
         self.confirmed = {}
         self.doubts = ()
 
@@ -198,15 +237,15 @@ class BallTrack:
             if near and (other.robot != sighting.robot or not self._contradicted(sighting.robot, exposed_us)):
                 self.confirmed = {}
                 self._begin(other)
-                assert self.filter is not None
-                self.filter.predict(between_s, rolling_m_s2)
-                self.filter.see(sighting.position_m, sighting.covariance_m2)
+                self._advance(between_s, Step(rolling_m_s2))
+                self._fits(sighting)
                 self._confirm(sighting)
                 return
         self.doubts = (*self.doubts, (self.time_us, sighting))
 
     def _begin(self, sighting: Sighting) -> None:
         self.filter = self._new(sighting.position_m, sighting.covariance_m2)
+        self.flight = Flight.of_sight(sighting.height_m)
         self.doubts = ()
         self._confirm(sighting)
 

@@ -14,6 +14,7 @@ from procs.model.frames import Floats
 from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_track import BallTrack, Sighting, Step, Walls
+from procs.world_model.flight import Flight
 from procs.world_model.seen import Seen
 
 _KEPT_US = 400_000  # older inputs are not used
@@ -60,6 +61,11 @@ class BallTracker:
         if found is None:
             raise ValueError("the ball is not known; ask 'known' first")
         return found
+
+    @property
+    def flight(self) -> Flight | None:
+        """Height and lift of a ball in the air; None for a ball on the ground."""
+        return self._at_now().flight
 
     @property
     def age_s(self) -> float:
@@ -116,7 +122,7 @@ class BallTracker:
         """
         self._take(_HELD, age_s, lambda track: track.hold(robot, state, covariance))
 
-    def kick(self, velocity_m_s: Floats, age_s: float = 0.0, mouth: Seen = Seen.NOTHING) -> None:
+    def kick(self, velocity_m_s: Floats, age_s: float = 0.0, mouth: Seen = Seen.NOTHING, lift_m_s: float = 0.0) -> None:
         """Takes a kick that gave the ball a velocity; call it before `advance`.
 
         From then on no robot was near enough to touch the ball, whatever earlier calls of `advance` said.
@@ -125,12 +131,13 @@ class BallTracker:
             velocity_m_s: (2), world frame.
             age_s: time since the kick; negative: so long after the last tick, within the one that `advance` ends.
             mouth: place of the ball at the kick (0 or 1), if it is not the track's: the mouth of a mate.
+            lift_m_s: velocity upwards.
         """
         kicked_us = self._now_us - round(age_s * US_PER_S)
         self._steps = [
             (end_us, replace(step, contact=0.0) if end_us > kicked_us else step) for end_us, step in self._steps
         ]
-        self._take(_KICKED, age_s, lambda track: track.kick(velocity_m_s, mouth))
+        self._take(_KICKED, age_s, lambda track: track.kick(velocity_m_s, lift_m_s, mouth))
 
     def _take(self, rank: int, age_s: float, taken: _Input) -> None:
         """Keeps an input at its time, unless that is too long ago."""

@@ -10,6 +10,7 @@ from procs.world_model.seen import Seen
 from procs.world_model.team import Mate
 
 _FASTEST = (8.0, 8.0, 15.0)  # m/s, m/s, rad/s: a pose that changes faster was corrected
+_ROLLS_IN_M_S = 0.5  # a slower ball is as good as held
 
 
 class OwnView:
@@ -85,6 +86,15 @@ class OwnView:
         covariance = np.zeros((4, 4))
         covariance[:2, :2] = by_pose @ self.covariance @ by_pose.T
         return state, covariance
+
+    def rolls_in(self, ball: Floats, held: Floats) -> bool:
+        """Returns whether a ball (4) comes to the mouth, where a held ball has the state (4), and has not touched it.
+
+        The light barrier sees such a ball a moment before the mouth stops it.
+        """
+        ahead = rotation(float(self.pose[2])) @ (1.0, 0.0)
+        gap_m, away_m_s = ahead @ (ball[:2] - held[:2]), ahead @ (ball[2:] - held[2:])
+        return bool(gap_m > 0.0 and away_m_s < -_ROLLS_IN_M_S)
 
     def kicked_m_s(self, kick_speed_m_s: float, mouth_m: float) -> Floats:
         """Returns the velocity (2) of a ball that was just kicked, world frame."""

@@ -61,6 +61,9 @@ def _ball(ball: BallTracker) -> ball_estimate_t:
         track = ball.track
         estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s = track.state.tolist()
         estimate.covariance = track.covariance.tolist()
+        flight = ball.flight
+        if flight is not None:
+            estimate.z_m, estimate.vz_m_s = flight.height_m, flight.lift_m_s
         estimate.age_s = ball.age_s
         estimate.observers = ball.observers
     return estimate

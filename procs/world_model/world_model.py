@@ -24,6 +24,7 @@ from lcmtypes.soccer import (
 )
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
+from procs.model.frames import Floats
 from procs.model.geometry import plausible
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.units import US_PER_S
@@ -41,6 +42,8 @@ from procs.world_model.world_messages import fill_team_message, fill_world_model
 _STALE_S = 0.5  # older sightings of mates are not used
 _HOLDER_S = 0.3  # a mate's word that it holds the ball is believed for so long
 _KICK_MESSAGES = 2  # tell mates of a kick, in this tick and the next, as radio may lose one
+_IN_MOUTH_M2 = np.eye(2) * 0.03**2
+"""Covariance of a ball somewhere in the mouth."""
 _NEAR_M = 0.9  # the wall or an opponent this near to the ball may touch it
 
 
@@ -109,6 +112,7 @@ class WorldModel(Component):
         self._opponents = RobotTracks()
         self._team = Team()
         self._view: OwnView | None = None
+        self._held = False
         self._kicks = 0
         self._kick_messages = 0  # that are due for the newest kick
         self._mates_kicks: dict[str, int] = {}
@@ -163,32 +167,49 @@ class WorldModel(Component):
         if kicked:
             self._kick_messages = _KICK_MESSAGES
             velocity_m_s = view.kicked_m_s(kicker.kick_speed_m_s, self._mouth_m)
-            self._ball.kick(velocity_m_s, -passed_s / 2)  # at an unknown moment since the last tick
+            lift_m_s = _lift_m_s(kicker)
+            self._ball.kick(velocity_m_s, -passed_s / 2, lift_m_s=lift_m_s)  # at an unknown moment since the last tick
             message = self.team_message.value
             message.kicks, message.kick_us = kicker.kicks, self.clock.now_us - round(passed_s / 2 * US_PER_S)
             message.kick_vx_m_s, message.kick_vy_m_s = velocity_m_s.tolist()
+            message.kick_vz_m_s = lift_m_s
         self._take_mates_kicks(told, passed_s)
         contact = self._contact(team, passed_s)
         self._ball.advance(passed_s, config.ball_timeout_s, config.ball.rolling_m_s2, contact, self._walls)
         if kicker.ball_held and view.localized and not kicked:
-            self._ball.hold(self._robot, *view.held_ball(self._mouth_m))
+            self._take_held_ball(view)
+        self._held = kicker.ball_held
         if self.ball_percept.refreshed:
             percept = self.ball_percept.value
             age_s = self._age_s(percept.capture_us)
             seen = self._untold_ball = view.ball(percept, age_s)
             self.team_message.value.ball_capture_us = percept.capture_us or self.clock.now_us
-            self._see(self._robot, seen.widened(config.sight_correlation, config.pose_correlation), age_s)
+            self.team_message.value.ball_z_m = percept.z_m
+            seen = seen.widened(config.sight_correlation, config.pose_correlation)
+            self._see(self._robot, seen, percept.z_m, view.pose[:2], age_s)
         for message, mate in told:
             seen = ball_of(message).widened(config.team_correlation, 1.0)
-            self._see(mate.name, seen, self._age_s(message.ball_capture_us or message.header.time_us))
+            age_s = self._age_s(message.ball_capture_us or message.header.time_us)
+            self._see(mate.name, seen, message.ball_z_m, mate.position_m, age_s)
             told_s = self.clock.since_s(message.header.time_us)
             kicked_just_now = 0.0 <= (message.header.time_us - message.kick_us) / US_PER_S < self.clock.period_s
             if mate.holds_ball and mate.localized and told_s <= _STALE_S and not kicked_just_now:
                 self._ball.hold(mate.name, *held_by(mate, self._mouth_m), told_s)
 
+    def _take_held_ball(self, view: OwnView) -> None:
+        """Takes the ball that the light barrier sees: its place and, unless it is still rolling in, its velocity."""
+        state, covariance = view.held_ball(self._mouth_m)
+        if not self._held and self._ball.known and view.rolls_in(self._ball.track.state, state):
+            self._ball.see(Sighting(self._robot, True, state[:2], covariance[:2, :2] + _IN_MOUTH_M2))
+        else:
+            self._ball.hold(self._robot, state, covariance)
+
     def _contact(self, team: Sequence[PlaceRow], passed_s: float) -> float:
         """Returns the probability that a robot, a post or the wall around the field reaches the ball in a tick."""
         if not self._ball.known:
+            return 0.0
+        flight = self._ball.flight
+        if flight is not None and flight.height_m > self.config.robot.height_m:
             return 0.0
         track, rivals = self._ball.track, self._opponents
         if self._walls.near(track, passed_s):
@@ -198,23 +219,24 @@ class WorldModel(Component):
         variances_m2 += ((rivals.covariances[:, 0, 0] + rivals.covariances[:, 1, 1]) / 2).tolist()
         return touch_probability(track, robots, variances_m2, self._mouth_m, passed_s)
 
-    def _see(self, robot: str, seen: Seen, age_s: float) -> None:
+    def _see(self, robot: str, seen: Seen, height_m: float, observer_m: Floats, age_s: float) -> None:
         """Hands a sighting of the ball (0 or 1) to the tracker, unless it is too old or from the future."""
-        if not 0.0 <= age_s <= _STALE_S:
+        if not (0.0 <= age_s <= _STALE_S and plausible(height_m)):
             return
+        own = robot == self._robot
         for position_m, covariance_m2 in zip(seen.positions_m, seen.covariances_m2, strict=True):
-            self._ball.see(Sighting(robot, robot == self._robot, position_m, covariance_m2, age_s))
+            self._ball.see(Sighting(robot, own, position_m, covariance_m2, age_s, height_m, observer_m))
 
     def _take_mates_kicks(self, told: list[tuple[team_message_t, Mate]], passed_s: float) -> None:
         for message, mate in told:
             known = self._mates_kicks.get(mate.name, message.kicks)
             self._mates_kicks[mate.name] = message.kicks
             age_s = self.clock.since_s(message.kick_us)
-            sound = plausible(message.kick_vx_m_s, message.kick_vy_m_s) and 0.0 <= age_s <= _STALE_S
-            if message.kicks != known and sound:
+            sound = plausible(message.kick_vx_m_s, message.kick_vy_m_s, message.kick_vz_m_s)
+            if message.kicks != known and sound and 0.0 <= age_s <= _STALE_S:
                 mouth = mouth_of(mate, self._mouth_m, message.kick_us / US_PER_S)
                 velocity_m_s = np.array((message.kick_vx_m_s, message.kick_vy_m_s))
-                self._ball.kick(velocity_m_s, age_s - passed_s, mouth)
+                self._ball.kick(velocity_m_s, age_s - passed_s, mouth, message.kick_vz_m_s)
 
     def _follow_opponents(
         self, view: OwnView, team: Places, mates: int, told: list[tuple[team_message_t, Mate]], passed_s: float
@@ -297,3 +319,9 @@ class WorldModel(Component):
             deviation_m=config.obstacle_deviation_m,
             mate_radius_m=config.mate_radius_m,
         )
+
+
+def _lift_m_s(kicker: kicker_state_t) -> float:
+    """Returns the velocity upwards that the newest kick gave to the ball; 0 if the hardware tells no elevation."""
+    elevation_rad = kicker.kick_elevation_rad
+    return kicker.kick_speed_m_s * math.tan(elevation_rad) if 0.0 < elevation_rad < math.pi / 2 else 0.0

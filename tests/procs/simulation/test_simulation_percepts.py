@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fwk import Component, Writes
+from fwk import Component, Config, Writes
 from fwk.testing import Bench, MemorySystem
 from lcmtypes.soccer import ball_percept_t, ground_truth_t, line_points_t, obstacle_percepts_t, true_robot_t
 from procs.localization.line_map import line_map
@@ -55,20 +55,50 @@ class Scene(Component):
         self.ground_truth.write()
 
 
-@cache
-def measured(rendered: bool) -> dict[str, Any]:
-    """Errors of the ball and the obstacle by distance, distances of points from lines, and how much was found."""
-    parts: dict[str, Any] = {"world/scene": Scene}
+class FlyingConfig(Config):
+    """Place of a ball in the air."""
+
+    away_m: float = 1.0
+    height_m: float = 0.1
+
+
+class Flying(Component):
+    """A ball in the air goes around the robot."""
+
+    stage = "pre_loop"
+    ground_truth: Writes[ground_truth_t]
+    config: FlyingConfig
+
+    def init(self) -> None:
+        self.shown: list[ground_truth_t] = []
+
+    def loop(self) -> None:
+        angle_rad, away_m = 2.4 * len(self.shown), self.config.away_m
+        ball_m = (OWN[0] + away_m * math.cos(angle_rad), OWN[1] + away_m * math.sin(angle_rad))
+        self.ground_truth.value = truth(ball_m, ball_z_m=self.config.height_m)
+        self.shown.append(self.ground_truth.value)
+        self.ground_truth.write()
+
+
+def seen_through(rendered: bool, scene: type[Component], **settings: Any) -> MemorySystem:
+    """Returns a robot that sees a scene through camera and detectors, or by percepts from the truth."""
+    parts: dict[str, Any] = {"world/scene": scene}
     if rendered:
         parts |= {"cyan1/camera": Camera, "cyan1/omni_ball": OmniBall, "cyan1/omni_field": OmniField}
     else:
         parts |= {"cyan1/percepts": Percepts}
     owner = "camera" if rendered else "percepts"
-    system = MemorySystem(
+    return MemorySystem(
         parts,
-        settings={f"cyan1/{owner}": {"latency_s": 0.0}},
+        settings={f"cyan1/{owner}": {"latency_s": 0.0}, "world/scene": settings},
         channels={"world/scene": {"ground_truth": "world/ground_truth"}},
     )
+
+
+@cache
+def measured(rendered: bool) -> dict[str, Any]:
+    """Errors of the ball and the obstacle by distance, distances of points from lines, and how much was found."""
+    system = seen_through(rendered, Scene)
     system.tick(3 * FRAMES)
     scene: Any = system.runners["world/scene"].component
     balls: dict[float, list[float]] = {away_m: [] for away_m in AWAY_M}
@@ -155,14 +185,47 @@ def test_ball_behind_a_robot_is_not_seen() -> None:
     assert look(eyes, truth(ahead, (OWN[0] + 4.0, OWN[1]))).visible
 
 
-def test_ball_in_flight_appears_further_away() -> None:
-    percept = look(bench(realism="none"), truth((OWN[0] + 2.0, OWN[1]), ball_z_m=0.128))
-    assert place_of(percept) == pytest.approx((OWN[0] + 2.5, OWN[1]))
-    assert percept.confidence == pytest.approx(0.64)
+def test_ball_that_hardly_flies_appears_further_away() -> None:
+    percept = look(bench(realism="none"), truth((OWN[0] + 2.0, OWN[1]), ball_z_m=0.032))
+    assert place_of(percept) == pytest.approx((OWN[0] + 2.0 * 0.64 / 0.608, OWN[1]))
+    assert percept.confidence == pytest.approx(0.902, abs=0.01)
+    assert percept.z_m == 0.0
 
 
-def test_ball_that_seems_too_large_is_not_seen() -> None:
-    assert not look(bench(realism="none"), truth((OWN[0] + 2.0, OWN[1]), ball_z_m=0.32)).visible
+@pytest.mark.parametrize("height_m", [0.1, 0.32, 0.52])
+def test_ball_in_the_air_is_found_at_its_height(height_m: float) -> None:
+    percept = look(bench(realism="none"), truth((OWN[0] + 2.0, OWN[1]), ball_z_m=height_m))
+    assert place_of(percept) == pytest.approx((OWN[0] + 2.0, OWN[1]))
+    assert percept.z_m == pytest.approx(height_m)
+
+
+def test_ball_above_the_mirrors_edge_is_not_seen() -> None:
+    assert not look(bench(realism="none"), truth((OWN[0] + 2.0, OWN[1]), ball_z_m=0.75)).visible
+
+
+def test_ball_above_robots_is_not_hidden() -> None:
+    ahead, between = (OWN[0] + 3.0, OWN[1]), (OWN[0] + 1.5, OWN[1])
+    assert look(bench(realism="none"), truth(ahead, between, ball_z_m=0.61)).visible
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("away_m", [1.5, 3.0])
+@pytest.mark.parametrize("height_m", [0.15, 0.35])
+def test_errors_in_the_air_are_those_of_pictures(away_m: float, height_m: float) -> None:
+    def errors(rendered: bool) -> tuple[float, float]:
+        across, up = [], []
+        system = seen_through(rendered, Flying, away_m=away_m, height_m=height_m)
+        system.tick(3 * FRAMES)
+        percepts = [ball_percept_t.decode(each) for each in system.sent["cyan1/ball_percept"]]
+        flying: Any = system.runners["world/scene"].component
+        for percept, shown in zip(percepts, flying.shown, strict=True):
+            if percept.visible:
+                across.append(math.dist(world(percept.x_m, percept.y_m), (shown.ball_x_m, shown.ball_y_m)))
+                up.append(percept.z_m - height_m)
+        return rms(across), rms(up)
+
+    ratios = np.array(errors(rendered=False)) / errors(rendered=True)
+    assert np.all((ratios > 0.5) & (ratios < 2.0))
 
 
 @pytest.mark.slow

@@ -134,9 +134,34 @@ def test_half_hidden_ball_is_less_certain() -> None:
     assert half.covariance_m2[0, 0] > 2 * whole.covariance_m2[0, 0]
 
 
-def test_ball_in_the_air_is_no_ball_on_the_ground() -> None:
-    """The ball appears larger than a ball on the ground at that distance."""
-    assert FINDER.find(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), [], (-1.0, 2.0, 0.35)))) is None
+@pytest.mark.parametrize("height_m", [0.1, 0.3, 0.5])
+@pytest.mark.parametrize("distance_m", [1.0, 3.0, 5.0])
+def test_ball_in_the_air_is_found_at_its_height(distance_m: float, height_m: float) -> None:
+    rng, normed = np.random.default_rng(round(100 * distance_m)), []
+    for _ in range(30):
+        angle = rng.uniform(-math.pi, math.pi)
+        place_m = distance_m * np.array((math.cos(angle), math.sin(angle)))
+        ball_m = (place_m[0] - 1.0, place_m[1] + 2.0, height_m + 0.11)
+        ball = FINDER.find(picture(Scene(Pose(-1.0, 2.0, 0.0), [], ball_m), rng, SHAKE_PX))
+        assert ball is not None
+        assert ball.z_m == pytest.approx(height_m, abs=0.04 + 0.015 * distance_m)
+        error = np.array((ball.x_m, ball.y_m)) - place_m
+        normed.append(error @ np.linalg.solve(ball.covariance_m2, error))
+    assert 0.3 < np.mean(normed) / 2 < 1.8
+
+
+def test_ball_that_the_pictures_edge_cuts_is_not_seen() -> None:
+    ball_m = (0.0, 2.0, 0.81)  # its centre is above the horizon, its upper half above the mirror's edge
+    assert FINDER.find(renderer().render(Scene(Pose(-1.0, 2.0, 0.0), [], ball_m))) is None
+
+
+def test_ball_on_the_ground_never_seems_to_fly() -> None:
+    rng = np.random.default_rng(11)
+    for _ in range(150):
+        distance_m, angle = rng.uniform(0.4, 7.0), rng.uniform(-math.pi, math.pi)
+        ball_m = (distance_m * math.cos(angle) - 1.0, distance_m * math.sin(angle) + 2.0, 0.11)
+        ball = FINDER.find(picture(Scene(Pose(-1.0, 2.0, 0.0), [], ball_m), rng, SHAKE_PX))
+        assert ball is None or ball.z_m == 0.0
 
 
 @pytest.mark.parametrize("brightness", [0.6, 1.0, 1.3])

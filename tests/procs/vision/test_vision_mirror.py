@@ -65,3 +65,9 @@ def test_above_the_horizon_there_is_no_ground() -> None:
     mirror = Mirror(view_angle_rad=math.radians(110.0))
     corner = np.array([[0.0, mirror.centre_px]])
     assert np.isnan(mirror.ground(corner)).all()
+
+
+@pytest.mark.parametrize("mirror", [Mirror(), TILTED])
+@pytest.mark.parametrize("centre", [(0.36, 0.0, 0.11), (-2.0, 1.5, 0.11), (3.0, -3.0, 0.5), (1.0, 4.0, 0.85)])
+def test_centre_of_a_circle_undoes_sphere(mirror: Mirror, centre: tuple[float, float, float]) -> None:
+    assert mirror.centre_of(*mirror.sphere(centre, 0.11), 0.11) == pytest.approx(centre)

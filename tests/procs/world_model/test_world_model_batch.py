@@ -5,7 +5,8 @@ import pytest
 from numpy.typing import NDArray
 
 from procs.model.estimation import predict, update
-from procs.world_model.ball_filter import BallFilter, _passes
+from procs.world_model.ball_filter import BallFilter
+from procs.world_model.ball_modes import passes
 from procs.world_model.batch import corrected, innovation
 from procs.world_model.robot_tracks import RobotTracks
 
@@ -68,7 +69,7 @@ def test_mixture_equals_the_estimator_of_the_library() -> None:
     roots = 0.3 * rng.standard_normal((4, 7, 7))
     track._x, track._p = 0.1 * rng.standard_normal((4, 7)), roots @ roots.transpose(0, 2, 1) + 0.01 * np.eye(7)
     track._weights = np.array((0.1, 0.5, 0.3, 0.1))
-    moves = _passes(0.05, contact=1.0, slow=False)
+    moves = passes(0.05, contact=1.0, slow=False, flies=False)
     filters = []
     for state, covariance in zip(track._x, track._p, strict=True):
         made = KalmanFilter(dim_x=7, dim_z=2)

@@ -1,0 +1,109 @@
+"""The ball as the finder of the ball would report it, drawn from the truth: on the ground, or in the air."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from lcmtypes.soccer import ball_percept_t
+from procs.model.algebra import Floats
+from procs.simulation.percept_errors import PerceptErrors
+from procs.simulation.sight import blurred, claimed, shaken
+from procs.vision.ball_finder import AREA_PX, IN_THE_AIR, most_fit
+from procs.vision.mirror import Mirror
+from procs.vision.uncertainty import sphere_covariance
+
+LEAST_VISIBLE = 0.4
+"""Least visible part of a ball that is found; ER-Force's threshold, too."""
+_CLAIMED_PX = 0.5  # deviation that the finder states, shaking included
+_LEAST_AREA = 1e-6
+
+
+@dataclass(frozen=True)
+class BallSight:
+    """What a camera finds of a ball of known size."""
+
+    mirror: Mirror
+    radius_m: float
+    reach_m: float
+    """Largest distance of a ball that is found."""
+    errors: PerceptErrors
+
+    def found(
+        self, at_m: Floats, height_m: float, visible: float, shake_px: tuple[float, float], noise: list[float]
+    ) -> ball_percept_t:
+        """Returns the percept of a ball.
+
+        Where a ball in the air appears, a ball on the ground would be further away and smaller. A ball that is not much
+        larger than that is taken for a ball on the ground.
+
+        Args:
+            at_m: (1, 2), x and y in the robot frame.
+            height_m: of its lowest point.
+            visible: part of its area that nothing hides.
+            shake_px: shift of the picture forward and left.
+            noise: standard normal errors of its place along and across the ray, and of its area.
+        """
+        if height_m <= 0.0:
+            return self._blurred(at_m, visible, shake_px, noise)
+        column, row, radius_px = self.mirror.sphere((*at_m[0].tolist(), height_m + self.radius_m), self.radius_m)
+        area = max(_LEAST_AREA, visible * (1.0 + self.errors.ball_area_px / radius_px * noise[2]))
+        viewpoint_m = self.mirror.height_m - self.radius_m
+        if height_m < viewpoint_m:
+            appears_m = at_m * viewpoint_m / (viewpoint_m - height_m)
+            *_, expected_px = self.mirror.sphere((*appears_m[0].tolist(), self.radius_m), self.radius_m)
+            fit = area * (radius_px / expected_px) ** 2
+            if fit <= most_fit(expected_px):
+                return self._blurred(appears_m, min(fit, 1.0 / fit), shake_px, noise)
+        if not self.mirror.shows_all(column, row, radius_px):
+            return ball_percept_t()
+        return self._in_the_air(at_m, height_m, area, radius_px, shake_px, noise)
+
+    def on_ground(self, x_m: float, y_m: float, confidence: float) -> ball_percept_t:
+        """Returns the percept of a ball that is found at a place of the robot frame, or of none."""
+        percept = ball_percept_t()
+        if confidence >= LEAST_VISIBLE and math.hypot(x_m, y_m) <= self.reach_m:
+            percept.visible, percept.confidence = True, confidence
+            percept.x_m, percept.y_m = x_m, y_m
+            deviation_px = _CLAIMED_PX + 2.0 * max(0.0, 0.9 - confidence)
+            percept.covariance_m2 = claimed(self.mirror, x_m, y_m, deviation_px, deviation_px)
+        return percept
+
+    def _blurred(
+        self, at_m: Floats, confidence: float, shake_px: tuple[float, float], noise: list[float]
+    ) -> ball_percept_t:
+        along, across = shaken(at_m, shake_px)
+        ball_px = self.errors.ball_px
+        moved_m = blurred(self.mirror, at_m, along + ball_px * noise[0], across + ball_px * noise[1])
+        x_m, y_m = moved_m[0].tolist()
+        return self.on_ground(x_m, y_m, confidence)
+
+    def _in_the_air(
+        self,
+        at_m: Floats,
+        height_m: float,
+        area: float,
+        radius_px: float,
+        shake_px: tuple[float, float],
+        noise: list[float],
+    ) -> ball_percept_t:
+        """Returns the percept of a ball whose distance follows from its size: one that seems small seems far away."""
+        further = 1.0 / math.sqrt(area)
+        below_m = self.mirror.height_m - self.radius_m - height_m
+        range_m = max(1e-6, float(np.hypot(*at_m[0])))
+        distance_m = math.hypot(range_m, below_m)
+        px_rad = self.mirror.scale_px / (1.0 + below_m / distance_m)
+        (along,), (across,) = shaken(at_m, shake_px)
+        along_m = (along + self.errors.ball_px * noise[0]) / px_rad * below_m
+        across_m = (across + self.errors.ball_px * noise[1]) / px_rad * distance_m
+        ahead_x, ahead_y = (at_m[0] / range_m).tolist()
+        percept, range_m = ball_percept_t(), further * (range_m + along_m)
+        if range_m <= self.reach_m:
+            percept.visible, percept.confidence = True, IN_THE_AIR
+            percept.x_m = ahead_x * range_m - ahead_y * across_m
+            percept.y_m = ahead_y * range_m + ahead_x * across_m
+            centre_m = self.mirror.height_m - further * below_m
+            percept.z_m = max(0.0, centre_m - self.radius_m)
+            place_m = (percept.x_m, percept.y_m, centre_m)
+            percept.covariance_m2 = sphere_covariance(self.mirror, place_m, AREA_PX / radius_px, _CLAIMED_PX).tolist()
+        return percept

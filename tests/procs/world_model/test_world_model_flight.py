@@ -1,0 +1,180 @@
+"""A ball in the air: parabola, bounces, sightings by size; lobs of mates and rivals. A ball that enters a mouth."""
+
+import math
+from collections.abc import Iterator
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from procs.model.ball import BALL
+from procs.model.field import Field
+from procs.simulation.physics.ball_body import GRAVITY_M_S2
+from procs.world_model.ball_track import Sighting, Walls
+from procs.world_model.ball_tracker import BallTracker
+from procs.world_model.flight import Flight
+from tests.procs.world_model.eyes import PERIOD_S, ROLLING_M_S2, Floats
+from tests.procs.world_model.team_on_bench import Robot, team
+
+LIFT_M_S, SPEED_M_S = 4.0, 9.0
+EYE_M = np.array((2.0, -2.0))
+VIEWPOINT_M = 0.64  # above the middle of a ball on the ground
+
+
+def lobbed(lift_m_s: float = LIFT_M_S, speed_m_s: float = SPEED_M_S) -> Iterator[tuple[Floats, Floats]]:
+    """Yields place (3) and velocity (3) of a ball that is kicked at the origin along x, and bounces."""
+    place, velocity, step_s = np.zeros(3), np.array((speed_m_s, 0.0, lift_m_s)), 0.001
+    while True:
+        for _ in range(round(PERIOD_S / step_s)):
+            place = place + velocity * step_s
+            velocity = velocity - (0.0, 0.0, GRAVITY_M_S2 * step_s)
+            if place[2] <= 0.0:
+                place[2], rebound_m_s = 0.0, -BALL.bounce * velocity[2]
+                velocity[2] = max(0.0, rebound_m_s)
+        yield place, velocity
+
+
+def seen(place: Floats, rng: np.random.Generator, own: bool = True) -> Sighting | None:
+    """Returns how a robot sees a ball: not above the mirror; at its height, unless it hardly flies."""
+    if place[2] > VIEWPOINT_M - 0.1:
+        return None
+    if place[2] < 0.04:
+        appears_m = EYE_M + (place[:2] - EYE_M) * VIEWPOINT_M / (VIEWPOINT_M - place[2])
+        return Sighting("a", own, appears_m, np.eye(2) * 0.02**2, observer_m=EYE_M)
+    noisy = place + 0.02 * rng.standard_normal(3)
+    return Sighting("a", own, noisy[:2], np.eye(2) * 0.03**2, height_m=float(noisy[2]), observer_m=EYE_M)
+
+
+def test_flight_is_a_parabola_with_bounces() -> None:
+    flight = Flight.of_kick(LIFT_M_S)
+    for place, velocity in islice(lobbed(), 27):
+        assert flight is not None
+        flight, grounded_s = flight.moved(PERIOD_S)
+        assert flight is not None
+        assert grounded_s == 0.0
+        assert flight.height_m == pytest.approx(place[2], abs=0.03)
+        assert flight.lift_m_s == pytest.approx(velocity[2], abs=0.15)
+
+
+def test_low_bounces_end_the_flight_and_the_carpet_acts_again() -> None:
+    flight = Flight.of_kick(0.6)
+    assert flight is not None
+    landed, grounded_s = flight.moved(0.2)
+    assert landed is None
+    assert grounded_s == pytest.approx(0.2 - 2 * 0.6 / GRAVITY_M_S2)
+
+
+def test_kick_along_the_ground_is_no_flight() -> None:
+    assert Flight.of_kick(0.0) is None
+    assert Flight.of_sight(0.0) is None
+
+
+def test_own_lob_is_known_without_any_sighting() -> None:
+    tracker = BallTracker()
+    tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    tracker.hold("a", np.zeros(4), np.zeros((4, 4)))
+    tracker.kick(np.array((SPEED_M_S, 0.0)), lift_m_s=LIFT_M_S)
+    for place, velocity in islice(lobbed(), 15):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        assert tracker.track.state[:2] == pytest.approx(place[:2], abs=0.05)
+        assert tracker.track.state[2] == pytest.approx(velocity[0], abs=0.02)
+        assert tracker.flight is not None
+        assert tracker.flight.height_m == pytest.approx(place[2], abs=0.03)
+
+
+@pytest.mark.parametrize("lift_m_s", [3.0, 4.0])
+def test_lob_of_a_rival_is_known_by_the_balls_size(lift_m_s: float) -> None:
+    rng, tracker, errors_m = np.random.default_rng(4), BallTracker(), []
+    for _ in range(10):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact=1.0)
+        tracker.see(Sighting("a", True, 0.01 * rng.standard_normal(2), np.eye(2) * 0.02**2, observer_m=EYE_M))
+    for tick, (place, _) in enumerate(islice(lobbed(lift_m_s), 20)):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact=1.0 if tick == 0 else 0.0)
+        sighting = seen(place, rng)
+        if sighting is not None:
+            tracker.see(sighting)
+        if tick >= 2:
+            flight = tracker.flight
+            errors_m.append(
+                (math.dist(tracker.track.state[:2], place[:2]), (flight.height_m if flight else 0) - place[2])
+            )
+    assert np.max(np.abs(errors_m), axis=0) == pytest.approx((0.0, 0.0), abs=0.35)
+
+
+def test_lob_of_a_mate_is_told_by_radio() -> None:
+    cyan = team()
+    ball_m = np.array((0.0, 0.0))
+    for _ in range(20):
+        cyan.tick(ball_m)
+    kicker = cyan.robots[0]
+    kick(kicker, LIFT_M_S)
+    cyan.tick(None)
+    cyan.tick(None)
+    for robot in cyan.robots:
+        ball = robot.world.ball
+        assert ball.vz_m_s == pytest.approx(LIFT_M_S - GRAVITY_M_S2 * 1.5 * PERIOD_S, abs=0.6)
+        assert ball.z_m > 0.1
+        assert math.hypot(ball.vx_m_s, ball.vy_m_s) == pytest.approx(SPEED_M_S, rel=0.05)
+
+
+def kick(robot: Robot, lift_m_s: float) -> None:
+    """Lets the kicker of a robot report a lob with its next frame."""
+    sense = robot.sense
+
+    def kicking(*args: object, **kwargs: object) -> None:
+        sense(*args, **kwargs)  # type: ignore[arg-type]
+        robot.bench.port("kicker_state").put(
+            kicks=1, kick_speed_m_s=SPEED_M_S, kick_elevation_rad=math.atan2(lift_m_s, SPEED_M_S)
+        )
+
+    robot.sense = kicking  # type: ignore[method-assign]
+
+
+def test_ball_that_flies_is_not_braked_and_one_that_landed_is() -> None:
+    def after(lift_m_s: float, ticks: int) -> float:
+        tracker = BallTracker()
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.hold("a", np.zeros(4), np.zeros((4, 4)))
+        tracker.kick(np.array((SPEED_M_S, 0.0)), lift_m_s=lift_m_s)
+        for _ in range(ticks):
+            tracker.advance(PERIOD_S, 5.0, ROLLING_M_S2)
+        return float(tracker.track.state[2])
+
+    assert after(LIFT_M_S, 10) == pytest.approx(SPEED_M_S, abs=0.02)
+    assert after(0.0, 10) == pytest.approx(SPEED_M_S - 10 * PERIOD_S * BALL.sliding_m_s2, abs=0.1)
+    assert after(LIFT_M_S, 60) < SPEED_M_S - 2.0
+
+
+def test_sighting_at_another_height_does_not_fit() -> None:
+    """An orange thing on the ground below the ball is another one."""
+    tracker = BallTracker()
+    tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    tracker.hold("a", np.zeros(4), np.zeros((4, 4)))
+    tracker.kick(np.array((SPEED_M_S, 0.0)), lift_m_s=LIFT_M_S)
+    for _ in range(4):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    before_m = tracker.track.state
+    tracker.see(Sighting("a", True, before_m[:2] + 0.1, np.eye(2) * 0.02**2, observer_m=EYE_M))
+    assert tracker.track.state == pytest.approx(before_m)
+
+
+def test_ball_leaves_the_ground_only_with_a_reason() -> None:
+    tracker = BallTracker()
+    walls = Walls.of(Field(), BALL)
+    for _ in range(30):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact=1.0, walls=walls)
+        tracker.see(Sighting("a", True, np.zeros(2), np.eye(2) * 0.02**2, observer_m=EYE_M))
+        assert tracker.flight is None
+
+
+def test_ball_that_enters_the_mouth_keeps_its_speed_until_it_touches() -> None:
+    """The light barrier sees the ball a few centimetres before the mouth stops it."""
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), 3, sight_correlation=1.0)
+    mouth_m = robot.bench.component._mouth_m
+    for tick in range(30):
+        gap_m = 3.0 * PERIOD_S * (28.2 - tick)
+        robot.sense(np.array((mouth_m + max(0.0, gap_m), 0.0)), [], held=gap_m < 0.04)
+        robot.bench.iterate()
+        if tick == 28:
+            assert robot.world.ball.vx_m_s == pytest.approx(-3.0, abs=0.5)
+    assert robot.world.ball.vx_m_s == pytest.approx(0.0, abs=0.3)
