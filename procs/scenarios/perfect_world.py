@@ -58,6 +58,7 @@ class PerfectWorldModel(Component):
         ball = ball_estimate_t()
         ball.known, ball.observers = True, 1
         ball.x_m, ball.y_m = truth.ball_x_m + config.ball_sd_m * noise[3], truth.ball_y_m + config.ball_sd_m * noise[4]
+        ball.z_m, ball.vz_m_s = truth.ball_z_m, truth.ball_vz_m_s
         ball.vx_m_s = truth.ball_vx_m_s + config.ball_velocity_sd_m_s * noise[5]
         ball.vy_m_s = truth.ball_vy_m_s + config.ball_velocity_sd_m_s * noise[6]
         place_m2, velocity_m2_s2 = config.ball_sd_m**2 + _ROUNDING_M2, config.ball_velocity_sd_m_s**2 + _ROUNDING_M2
