@@ -9,7 +9,7 @@ Order of the sources of sightings:
 A sighting that does not fit the track is dropped if a better source has confirmed the track at the same exposure.
 Otherwise it is kept as a doubt, until a better source confirms the track; two doubts that fit each other begin a new
 track: the ball was kicked, bounced or was placed elsewhere. Two doubts of one robot do not suffice if another robot has
-confirmed the track meanwhile.
+confirmed the track meanwhile. One doubt suffices if no robot has seen the ball for a while, as during most of a lob.
 """
 
 import math
@@ -27,6 +27,7 @@ from procs.world_model.flight import Flight
 from procs.world_model.seen import Seen
 
 _SECOND_SIGHT_US = 300_000
+_LOST_US = 250_000  # a ball that no robot has seen for so long may have met something
 _FASTEST_M_S = 13.0
 _OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
 _NEVER_US = -(1 << 60)
@@ -166,6 +167,9 @@ class BallTrack:
             self._begin(sighting)
         elif self._fits(sighting):
             self._confirm(sighting)
+        elif self.time_us - self.seen_us > _LOST_US:
+            self.confirmed = {}
+            self._begin(sighting)
         elif not self._overruled(sighting):
             self._doubt(sighting, rolling_m_s2)
 

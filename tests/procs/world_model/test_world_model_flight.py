@@ -158,6 +158,20 @@ def test_sighting_at_another_height_does_not_fit() -> None:
     assert tracker.track.state == pytest.approx(before_m)
 
 
+def test_lob_that_meets_something_unseen_is_found_with_one_sighting() -> None:
+    tracker = BallTracker()
+    tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    tracker.hold("a", np.zeros(4), np.zeros((4, 4)))
+    tracker.kick(np.array((SPEED_M_S, 0.0)), lift_m_s=LIFT_M_S)
+    for _ in range(8):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    place_m = np.array((1.0, 0.5))
+    tracker.see(Sighting("a", True, place_m, np.eye(2) * 0.02**2, height_m=0.3, observer_m=EYE_M))
+    assert tracker.track.state[:2] == pytest.approx(place_m)
+    assert tracker.flight is not None
+    assert tracker.flight.height_m == pytest.approx(0.3)
+
+
 def test_ball_leaves_the_ground_only_with_a_reason() -> None:
     tracker = BallTracker()
     walls = Walls.of(Field(), BALL)
