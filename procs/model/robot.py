@@ -11,6 +11,8 @@ from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt
 from procs.model.ball import BallModel
 
 CYAN, MAGENTA = "cyan", "magenta"
+TEAM_NUMBERS = {CYAN: 1, MAGENTA: 2}
+"""Number of each team in messages; 0 is none, or unknown."""
 """Cyan defends the goal at negative x."""
 
 _NAME = re.compile(r"(.*?)(\d*)")

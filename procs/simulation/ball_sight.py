@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lcmtypes.soccer import ball_percept_t
+from lcmtypes.soccer import ball_candidate_t, ball_percept_t
 from procs.model.algebra import Floats
 from procs.simulation.percept_errors import PerceptErrors
 from procs.simulation.sight import blurred, claimed, shaken
@@ -107,3 +107,11 @@ class BallSight:
             place_m = (percept.x_m, percept.y_m, centre_m)
             percept.covariance_m2 = sphere_covariance(self.mirror, place_m, AREA_PX / radius_px, _CLAIMED_PX).tolist()
         return percept
+
+
+def candidate(percept: ball_percept_t) -> ball_candidate_t:
+    """Returns the ball of a percept as one candidate among others."""
+    made = ball_candidate_t()
+    made.x_m, made.y_m, made.z_m = percept.x_m, percept.y_m, percept.z_m
+    made.covariance_m2, made.confidence = percept.covariance_m2, percept.confidence
+    return made

@@ -34,6 +34,8 @@ class PerceptErrors(BaseModel):
     """Part of the frames in which a visible ball is not found. ER-Force: 5 %."""
     robot_missed: float = 0.0
     """Part of the frames in which a visible robot is not found. ER-Force: 2 %."""
+    team_missed: float = 0.0
+    """Part of the robots whose marker's colour is not recognized. An estimate from rendered pictures."""
     line_missed: float = 0.0
     """Part of the line points that are not found."""
     ball_phantoms_1_s: float = 0.0
@@ -65,6 +67,7 @@ PRESETS: dict[Realism, PerceptErrors] = {
         line_px=0.05,
         ball_missed=0.02,
         robot_missed=0.01,
+        team_missed=0.01,
         line_missed=0.05,
         line_phantoms=0.01,
     ),
@@ -79,6 +82,7 @@ PRESETS: dict[Realism, PerceptErrors] = {
         line_px=0.1,
         ball_missed=0.05,
         robot_missed=0.02,
+        team_missed=0.03,
         line_missed=0.1,
         ball_phantoms_1_s=0.005,
         robot_phantoms_1_s=0.05,
@@ -95,6 +99,7 @@ PRESETS: dict[Realism, PerceptErrors] = {
         line_px=0.3,
         ball_missed=0.1,
         robot_missed=0.04,
+        team_missed=0.1,
         line_missed=0.2,
         ball_phantoms_1_s=0.05,
         mouth_phantoms_1_s=0.05,

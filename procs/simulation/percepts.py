@@ -19,8 +19,8 @@ from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
-from procs.model.robot import ROBOT, RobotModel
-from procs.simulation.ball_sight import LEAST_VISIBLE, BallSight
+from procs.model.robot import ROBOT, TEAM_NUMBERS, RobotModel
+from procs.simulation.ball_sight import LEAST_VISIBLE, BallSight, candidate
 from procs.simulation.delayed_truth import DelayedTruth
 from procs.simulation.gaps import Gaps
 from procs.simulation.line_scan import line_scan
@@ -51,6 +51,8 @@ class PerceptsConfig(Config):
     """Part of the frames in which a visible ball is not found."""
     robot_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the frames in which a visible robot is not found."""
+    team_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
+    """Part of the visible robots whose team is not recognized."""
     ball_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
     """Balls a second that are not there."""
     mouth_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
@@ -103,7 +105,7 @@ class Percepts(Component):
     def init(self) -> None:
         self._delayed = DelayedTruth(self.name, "percepts", self.log)
         self._before_us = -1
-        built, interrupted, self._mouth_rng = self.rng.spawn(3)
+        built, interrupted, self._mouth_rng, self._marker_rng = self.rng.spawn(4)
         self._tilts = built.standard_normal(2)
         self._gaps = Gaps(interrupted)
         self._apply_settings()
@@ -122,7 +124,8 @@ class Percepts(Component):
         others = [(robot.x_m, robot.y_m) for robot in seen.others]
         robots_m = _seen_from(own, np.array(others).reshape(-1, 2))
         self._see_ball(own, seen.truth, robots_m, (forward, left), passed_s)
-        self._see_robots(robots_m, (forward, left), passed_s)
+        teams = [TEAM_NUMBERS.get(robot.team, obstacle_t.TEAM_UNKNOWN) for robot in seen.others]
+        self._see_robots(robots_m, teams, (forward, left), passed_s)
         self._see_lines(own, robots_m, (forward, left))
         for port in (self.ball_percept, self.obstacle_percepts, self.line_points):
             port.value.capture_us = seen.capture_us
@@ -149,18 +152,24 @@ class Percepts(Component):
             hidden_part = float(hidden(at_m, robots_m, self.config.robot.radius_m)[0])
             covered = 0.0 if truth.ball_z_m > self.config.robot.height_m else hidden_part
             percept = self._ball_sight.found(at_m, truth.ball_z_m, 1.0 - covered, shake_px, noise)
-        if not percept.visible and phantom < -math.expm1(-errors.ball_phantoms_1_s * passed_s):
+        if phantom < -math.expm1(-errors.ball_phantoms_1_s * passed_s):
             range_m, angle_rad = 0.5 + distance * (self.config.ball_reach_m - 0.5), direction * math.tau
             x_m, y_m = range_m * math.cos(angle_rad), range_m * math.sin(angle_rad)
-            percept = self._ball_sight.on_ground(x_m, y_m, LEAST_VISIBLE)
+            ghost = self._ball_sight.on_ground(x_m, y_m, LEAST_VISIBLE)
+            if percept.visible:
+                percept.others = [candidate(ghost)]
+            else:
+                percept = ghost
         if not percept.visible and self._mouth_rng.random() < -math.expm1(-errors.mouth_phantoms_1_s * passed_s):
             in_mouth_m = self.config.robot.held_ball_m(self.config.ball)
             percept = self._ball_sight.on_ground(in_mouth_m, 0.0, LEAST_VISIBLE)
         self.ball_percept.value = percept
 
-    def _see_robots(self, robots_m: Floats, shake_px: tuple[float, float], passed_s: float) -> None:
+    def _see_robots(self, robots_m: Floats, teams: list[int], shake_px: tuple[float, float], passed_s: float) -> None:
         errors, config = self._errors, self.config
-        found_m = robots_m[np.hypot(robots_m[:, 0], robots_m[:, 1]) <= config.reach_m]
+        near = np.hypot(robots_m[:, 0], robots_m[:, 1]) <= config.reach_m
+        found_m = robots_m[near]
+        known = self._marker_rng.random(len(found_m)) >= errors.team_missed
         luck, noise = self.rng.random(len(found_m)), self.rng.standard_normal((2, len(found_m)))
         phantom, direction, distance = self.rng.random(3)
         seen = (luck >= errors.robot_missed) & (hidden(found_m, robots_m, config.robot.radius_m) < 1 - LEAST_VISIBLE)
@@ -168,12 +177,15 @@ class Percepts(Component):
         moved_m = blurred(
             self._mirror, found_m, along + errors.robot_along_px * noise[0], across + errors.robot_across_px * noise[1]
         )[seen]
+        colours = np.where(known, np.array(teams, int)[near], obstacle_t.TEAM_UNKNOWN)[seen].tolist()
         if phantom < -math.expm1(-errors.robot_phantoms_1_s * passed_s):
             range_m, angle_rad = 0.6 + distance * (config.reach_m - 0.6), direction * math.tau
             moved_m = np.vstack((moved_m, range_m * np.array((math.cos(angle_rad), math.sin(angle_rad)))))
+            colours.append(obstacle_t.TEAM_UNKNOWN)
         percepts = self.obstacle_percepts.value = obstacle_percepts_t()
-        for x_m, y_m in moved_m.tolist():
+        for (x_m, y_m), team in zip(moved_m.tolist(), colours, strict=True):
             obstacle = obstacle_t()
+            obstacle.team = team
             obstacle.x_m, obstacle.y_m, obstacle.radius_m = x_m, y_m, config.robot.radius_m
             obstacle.covariance_m2 = claimed(self._mirror, x_m, y_m, *_CLAIMED_ROBOT_PX)
             percepts.obstacles.append(obstacle)

@@ -71,17 +71,21 @@ class BallFinder:
 
     def find(self, pixels: Picture) -> BallSighting | None:
         """Returns the likeliest ball in a picture, height x width x 3, or None."""
+        return next(iter(self.find_all(pixels)), None)
+
+    def find_all(self, pixels: Picture) -> list[BallSighting]:
+        """Returns all that may be the ball in a picture, height x width x 3, the likelier the earlier."""
         coarse = cv2.resize(pixels, None, fx=1 / _STEP_PX, fy=1 / _STEP_PX, interpolation=cv2.INTER_NEAREST)
         mask = self.colour.mask(to_hsv(np.asarray(coarse, np.uint8))).view(np.uint8)
         left, top, width, height = cv2.boundingRect(mask)
         if not width:
-            return None
+            return []
         part = mask[top : top + height, left : left + width]  # a labelling of the whole picture takes much longer
         _, _, boxes, _ = cv2.connectedComponentsWithStats(part, connectivity=8)
         blobs = boxes[1:] + np.array((left, top, 0, 0, 0))
         largest = np.argsort(-blobs[:, cv2.CC_STAT_AREA], kind="stable")[:_CANDIDATES]
         sightings = [self._sighting(self._blob(pixels, blobs[i])) for i in largest]
-        return max((s for s in sightings if s is not None), key=lambda s: s.confidence, default=None)
+        return sorted((s for s in sightings if s is not None), key=lambda s: -s.confidence)
 
     def _blob(self, pixels: Picture, box: cv2.typing.MatLike) -> _Blob | None:
         """Measures a blob of the coarse picture in the full one."""

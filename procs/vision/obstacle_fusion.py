@@ -62,6 +62,7 @@ def _mean(one: obstacle_t, other: obstacle_t) -> obstacle_t:
         return other if first is None else one
     share = first @ np.linalg.inv(first + second)
     made = obstacle_t()
+    made.team = one.team or other.team
     way_m = share @ np.array((other.x_m - one.x_m, other.y_m - one.y_m))
     made.x_m, made.y_m = one.x_m + float(way_m[0]), one.y_m + float(way_m[1])
     made.radius_m = one.radius_m

@@ -3,7 +3,7 @@
 from pydantic import Field as Setting
 
 from fwk import Writes
-from lcmtypes.soccer import ball_percept_t
+from lcmtypes.soccer import ball_candidate_t, ball_percept_t
 from procs.model.ball import BALL, BallModel
 from procs.vision.ball_finder import BallFinder, BallSighting
 from procs.vision.colours import ColourRange, Hsv, Picture
@@ -42,17 +42,25 @@ class OmniBall(Detector):
         )
 
     def detect(self, pixels: Picture) -> None:
-        self._write(self._finder.find(pixels))
+        self._write(self._finder.find_all(pixels))
 
     def report_nothing(self) -> None:
-        self._write(None)
+        self._write([])
 
-    def _write(self, ball: BallSighting | None) -> None:
+    def _write(self, balls: list[BallSighting]) -> None:
         percept = self.ball_percept.value = ball_percept_t()
         percept.capture_us = self.capture_us
-        if ball is not None:
+        if balls:
             percept.visible = True
-            percept.x_m, percept.y_m, percept.z_m = ball.x_m, ball.y_m, ball.z_m
-            percept.covariance_m2 = ball.covariance_m2.tolist()
-            percept.confidence = ball.confidence
+            _fill(percept, balls[0])
+        for ball in balls[1:]:
+            other = ball_candidate_t()
+            _fill(other, ball)
+            percept.others.append(other)
         self.ball_percept.write()
+
+
+def _fill(message: ball_percept_t | ball_candidate_t, ball: BallSighting) -> None:
+    message.x_m, message.y_m, message.z_m = ball.x_m, ball.y_m, ball.z_m
+    message.covariance_m2 = ball.covariance_m2.tolist()
+    message.confidence = ball.confidence

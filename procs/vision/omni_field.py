@@ -10,6 +10,7 @@ from procs.model.robot import ROBOT, RobotModel
 from procs.vision.colours import ColourRange, Hsv, Picture, to_hsv
 from procs.vision.detector import Detector, DetectorConfig
 from procs.vision.line_finder import LineFinder
+from procs.vision.marker_finder import MarkerFinder
 from procs.vision.obstacle_finder import Obstacle, ObstacleFinder
 from procs.vision.scan import Scan
 
@@ -45,6 +46,14 @@ class OmniFieldConfig(DetectorConfig):
     """Least hue, saturation and value of the robots' bodies."""
     black_high: Hsv = (179, 255, 70)
     """Greatest hue, saturation and value of the robots' bodies."""
+    cyan_low: Hsv = (78, 90, 60)
+    """Least hue, saturation and value of cyan markers."""
+    cyan_high: Hsv = (112, 255, 255)
+    """Greatest hue, saturation and value of cyan markers."""
+    magenta_low: Hsv = (138, 90, 60)
+    """Least hue, saturation and value of magenta markers."""
+    magenta_high: Hsv = (172, 255, 255)
+    """Greatest hue, saturation and value of magenta markers."""
 
 
 class OmniField(Detector):
@@ -61,10 +70,11 @@ class OmniField(Detector):
         _rings(config)
 
     def detect(self, pixels: Picture) -> None:
-        self._write(*self._find(pixels))
+        points_m, obstacles = self._find(pixels)
+        self._write(points_m, obstacles, self._markers.find(pixels, [(each.x_m, each.y_m) for each in obstacles]))
 
     def report_nothing(self) -> None:
-        self._write(np.empty((0, 2)), [])
+        self._write(np.empty((0, 2)), [], [])
 
     def apply_settings(self) -> None:
         config = self.config
@@ -74,6 +84,8 @@ class OmniField(Detector):
         black = ColourRange(config.black_low, config.black_high)
         self._star, self._rings = _star(config), _rings(config)
         self._lines = LineFinder(green, white)
+        teams = ColourRange(config.cyan_low, config.cyan_high), ColourRange(config.magenta_low, config.magenta_high)
+        self._markers = MarkerFinder(mirror, teams, config.robot.radius_m)
         self._obstacles = ObstacleFinder(
             mirror, self._star, black, (green, white), config.robot.radius_m, config.deviation_px
         )
@@ -85,16 +97,17 @@ class OmniField(Detector):
             points_m = points_m[np.linspace(0, len(points_m) - 1, self.config.most_points).astype(int)]
         return points_m, self._obstacles.find(star)
 
-    def _write(self, points_m: Floats, obstacles: list[Obstacle]) -> None:
+    def _write(self, points_m: Floats, obstacles: list[Obstacle], teams: list[int]) -> None:
         points, percepts = self.line_points.value, self.obstacle_percepts.value
         points.x_m, points.y_m = points_m.T.tolist()
         points.capture_us = percepts.capture_us = self.capture_us
-        percepts.obstacles = [self._message(obstacle) for obstacle in obstacles]
+        percepts.obstacles = [self._message(*each) for each in zip(obstacles, teams, strict=True)]
         self.line_points.write()
         self.obstacle_percepts.write()
 
-    def _message(self, obstacle: Obstacle) -> obstacle_t:
+    def _message(self, obstacle: Obstacle, team: int) -> obstacle_t:
         message = obstacle_t()
+        message.team = team
         message.x_m, message.y_m = obstacle.x_m, obstacle.y_m
         message.radius_m = self.config.robot.radius_m
         message.covariance_m2 = obstacle.covariance_m2.tolist()

@@ -13,6 +13,7 @@ confirmed the track meanwhile. One doubt suffices if no robot has seen the ball 
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from dataclasses import field as of_class
 
@@ -161,12 +162,15 @@ class BallTrack:
         if step.walls is not None:
             step.walls.contain(self.filter)
 
-    def see(self, sighting: Sighting, rolling_m_s2: float) -> None:
-        """Takes a sighting that was captured at the time of the track."""
+    def see(self, sighting: Sighting, rolling_m_s2: float, others: Sequence[Sighting] = ()) -> None:
+        """Takes a sighting that was captured at the time of the track.
+
+        Of the `others` in the same frame the first that fits the track counts, if the sighting does not.
+        """
         if self.filter is None:
             self._begin(sighting)
-        elif self._fits(sighting):
-            self._confirm(sighting)
+        elif (fitting := next(filter(self._fits, (sighting, *others)), None)) is not None:
+            self._confirm(fitting)
         elif self.time_us - self.seen_us > _LOST_US:
             self.confirmed = {}
             self._begin(sighting)

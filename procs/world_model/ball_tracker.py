@@ -106,10 +106,10 @@ class BallTracker:
             self._moments[0] = _Moment(self._moved(self._moments[0].track, oldest_us))
         self._sound = len(self._moments)
 
-    def see(self, sighting: Sighting) -> None:
-        """Takes a sighting."""
+    def see(self, sighting: Sighting, *others: Sighting) -> None:
+        """Takes a sighting; `others` are other things in the same frame that may be the ball, if the first is not."""
         rank = _BY_OWN_CAMERA if sighting.own else _BY_MATE
-        self._take(rank, sighting.age_s, lambda track: track.see(sighting, self._steps[-1][1].rolling_m_s2))
+        self._take(rank, sighting.age_s, lambda track: track.see(sighting, self._steps[-1][1].rolling_m_s2, others))
 
     def hold(self, robot: str, state: Floats, covariance: Floats, age_s: float = 0.0) -> None:
         """Takes a ball in a mouth of the team; earlier sightings do not count any more.

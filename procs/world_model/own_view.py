@@ -3,7 +3,7 @@
 import numpy as np
 
 from lcmtypes.robot import odometry_t
-from lcmtypes.soccer import ball_percept_t, obstacle_percepts_t, pose_t
+from lcmtypes.soccer import ball_candidate_t, ball_percept_t, obstacle_percepts_t, pose_t
 from procs.model.frames import Floats, rotation, to_world, wrap
 from procs.model.geometry import plausible
 from procs.world_model.seen import Seen
@@ -53,14 +53,22 @@ class OwnView:
         self._shake = 1.0 + (shake_s_m * float(np.hypot(*self.velocity_m_s))) ** 2
 
     def ball(self, percept: ball_percept_t, age_s: float) -> Seen:
-        """Returns the ball (0 or 1) of a percept captured `age_s` ago."""
-        if not (percept.visible and self.localized):
-            return Seen.NOTHING
-        return self._from_here(Seen.of([(percept.x_m, percept.y_m)], [percept.covariance_m2], [0.0]), age_s)
+        """Returns the likeliest ball (0 or 1) of a percept captured `age_s` ago."""
+        return self._candidate(percept, age_s) if percept.visible and self.localized else Seen.NOTHING
 
-    def obstacles(self, percepts: obstacle_percepts_t, age_s: float) -> Seen:
-        """Returns the obstacles of percepts captured `age_s` ago."""
-        seen = percepts.obstacles
+    def other_balls(self, percept: ball_percept_t, age_s: float) -> list[tuple[Seen, float]]:
+        """Returns the less likely balls of a percept captured `age_s` ago, each (0 or 1) with its height in m."""
+        return [(self._candidate(other, age_s), other.z_m) for other in percept.others] if self.localized else []
+
+    def _candidate(self, ball: ball_percept_t | ball_candidate_t, age_s: float) -> Seen:
+        return self._from_here(Seen.of([(ball.x_m, ball.y_m)], [ball.covariance_m2], [0.0]), age_s)
+
+    def obstacles(self, percepts: obstacle_percepts_t, age_s: float, team: int) -> Seen:
+        """Returns the obstacles of percepts captured `age_s` ago, without robots that show the colour of a team.
+
+        `team` is its number; 0 leaves out none.
+        """
+        seen = [one for one in percepts.obstacles if not team or one.team != team]
         if not (seen and self.localized):
             return Seen.NOTHING
         places_m = [(one.x_m, one.y_m) for one in seen]

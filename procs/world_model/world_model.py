@@ -26,7 +26,7 @@ from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
 from procs.model.frames import Floats
 from procs.model.geometry import plausible
-from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
+from procs.model.robot import PLAYERS, ROBOT, TEAM_NUMBERS, Players, RobotModel
 from procs.model.units import US_PER_S
 from procs.world_model.ball_track import Sighting, Walls
 from procs.world_model.ball_tracker import BallTracker
@@ -147,6 +147,8 @@ class WorldModel(Component):
     def _apply_settings(self) -> None:
         self._walls = Walls.of(self.config.field, self.config.ball)
         self._rules = self._opponent_settings()
+        player = self.config.players.get(self._robot)
+        self._own_team = TEAM_NUMBERS[player.team] if player else 0
         self._mouth_m = self.config.robot.held_ball_m(self.config.ball)  # from the robot's middle to a held ball's
 
     def _listen(self, now_s: float) -> list[tuple[team_message_t, Mate]]:
@@ -180,17 +182,11 @@ class WorldModel(Component):
             self._take_held_ball(view)
         self._held = kicker.ball_held
         if self.ball_percept.refreshed:
-            percept = self.ball_percept.value
-            age_s = self._age_s(percept.capture_us)
-            seen = self._untold_ball = view.ball(percept, age_s)
-            self.team_message.value.ball_capture_us = percept.capture_us or self.clock.now_us
-            self.team_message.value.ball_z_m = percept.z_m
-            seen = seen.widened(config.sight_correlation, config.pose_correlation)
-            self._see(self._robot, seen, percept.z_m, view.pose[:2], age_s)
+            self._look_for_ball(view, self.ball_percept.value)
         for message, mate in told:
             seen = ball_of(message).widened(config.team_correlation, 1.0)
             age_s = self._age_s(message.ball_capture_us or message.header.time_us)
-            self._see(mate.name, seen, message.ball_z_m, mate.position_m, age_s)
+            self._see(self._sightings(mate.name, seen, message.ball_z_m, mate.position_m, age_s))
             told_s = self.clock.since_s(message.header.time_us)
             kicked_just_now = 0.0 <= (message.header.time_us - message.kick_us) / US_PER_S < self.clock.period_s
             if mate.holds_ball and mate.localized and told_s <= _STALE_S and not kicked_just_now:
@@ -219,13 +215,31 @@ class WorldModel(Component):
         variances_m2 += ((rivals.covariances[:, 0, 0] + rivals.covariances[:, 1, 1]) / 2).tolist()
         return touch_probability(track, robots, variances_m2, self._mouth_m, passed_s)
 
-    def _see(self, robot: str, seen: Seen, height_m: float, observer_m: Floats, age_s: float) -> None:
-        """Hands a sighting of the ball (0 or 1) to the tracker, unless it is too old or from the future."""
+    def _look_for_ball(self, view: OwnView, percept: ball_percept_t) -> None:
+        """Takes the newest percept of the ball, and keeps its likeliest place for the next message to the team."""
+        config, message, age_s = self.config, self.team_message.value, self._age_s(percept.capture_us)
+        seen = self._untold_ball = view.ball(percept, age_s)
+        message.ball_capture_us, message.ball_z_m = percept.capture_us or self.clock.now_us, percept.z_m
+        sightings = []
+        for candidate, height_m in ((seen, percept.z_m), *view.other_balls(percept, age_s)):
+            widened = candidate.widened(config.sight_correlation, config.pose_correlation)
+            sightings += self._sightings(self._robot, widened, height_m, view.pose[:2], age_s)
+        self._see(sightings)
+
+    def _sightings(self, robot: str, seen: Seen, height_m: float, observer_m: Floats, age_s: float) -> list[Sighting]:
+        """Returns a sighting of the ball (0 or 1), unless it is too old, from the future or impossible."""
         if not (0.0 <= age_s <= _STALE_S and plausible(height_m)):
-            return
+            return []
         own = robot == self._robot
-        for position_m, covariance_m2 in zip(seen.positions_m, seen.covariances_m2, strict=True):
-            self._ball.see(Sighting(robot, own, position_m, covariance_m2, age_s, height_m, observer_m))
+        return [
+            Sighting(robot, own, position_m, covariance_m2, age_s, height_m, observer_m)
+            for position_m, covariance_m2 in zip(seen.positions_m, seen.covariances_m2, strict=True)
+        ]
+
+    def _see(self, sightings: list[Sighting]) -> None:
+        """Hands what may be the ball in one frame to the tracker, the likeliest first."""
+        if sightings:
+            self._ball.see(*sightings)
 
     def _take_mates_kicks(self, told: list[tuple[team_message_t, Mate]], passed_s: float) -> None:
         for message, mate in told:
@@ -247,7 +261,7 @@ class WorldModel(Component):
         if self.obstacle_percepts.refreshed:
             percepts = self.obstacle_percepts.value
             age_s = self._age_s(percepts.capture_us)
-            seen = strangers(view.obstacles(percepts, age_s), team.first(mates), now_s - age_s, rules)
+            seen = strangers(view.obstacles(percepts, age_s, self._own_team), team.first(mates), now_s - age_s, rules)
             self._untold_obstacles = seen
             self.team_message.value.obstacles_capture_us = percepts.capture_us or self.clock.now_us
             seen = seen.widened(config.sight_correlation, config.pose_correlation)

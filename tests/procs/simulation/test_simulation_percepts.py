@@ -245,6 +245,17 @@ def test_phantoms_come_at_their_rate() -> None:
     assert robots / 60 == pytest.approx(2.0, abs=0.6)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("share", [0.0, 0.3])
+def test_teams_are_recognized_but_for_a_share(share: float) -> None:
+    eyes = bench(realism="none", team_missed=share)
+    for _ in range(300):
+        look(eyes, truth((0.0, 0.0), (OWN[0] + 1.5, OWN[1]), (OWN[0], OWN[1] + 2.0)))
+    teams = [one.team for percepts in eyes.port("obstacle_percepts").sent for one in percepts.obstacles]
+    assert set(teams) == {2} if share == 0.0 else {0, 2}
+    assert teams.count(2) / len(teams) == pytest.approx(1.0 - share, abs=0.06)
+
+
 def test_robot_off_the_field_sees_nothing_and_reports_it_once() -> None:
     eyes = Bench(Percepts, name="cyan7/percepts")
     for _ in range(3):

@@ -199,6 +199,17 @@ def test_stripe_with_a_balls_area_is_no_ball() -> None:
     assert FINDER.find(frame) is not None  # so the shape made the difference
 
 
+def test_all_things_like_a_ball_are_found_the_likelier_earlier() -> None:
+    frame = renderer().render(Scene(Pose(-1.0, 2.0, 0.0), [], (1.0, 2.0, 0.11)))
+    column, row, radius_px = MIRROR.sphere((0.0, 3.0, 0.11), 0.09)  # a smaller ball, so a less likely one
+    rows, columns = np.mgrid[:400, :400]
+    frame[np.hypot(columns - column, rows - row) < radius_px] = ORANGE
+    likely, unlikely = FINDER.find_all(frame)
+    assert (likely.x_m, likely.y_m) == pytest.approx((2.0, 0.0), abs=0.05)
+    assert (unlikely.x_m, unlikely.y_m) == pytest.approx((0.0, 3.0), abs=0.3)
+    assert likely.confidence > unlikely.confidence
+
+
 def test_odd_picture_size_works_as_well() -> None:
     mirror = Mirror(size_px=331)
     frame = Renderer(mirror, Field(), Bodies()).render(Scene(Pose(-3.0, 2.0, 0.0), [], (-1.0, 2.5, 0.11)))

@@ -41,8 +41,13 @@ class Robot:
         turn = rotation(math.atan2(seen_m[1], seen_m[0]))
         return seen_m + turn @ (deviations_m * self.rng.standard_normal(2)), turn @ np.diag(deviations_m**2) @ turn.T
 
-    def sense(self, ball_m: Floats | None, others_m: list[Floats], held: bool = False) -> None:
-        """Puts a frame on the bench: sightings of ball and robots, the pose, and the other inputs."""
+    def sense(
+        self, ball_m: Floats | None, others_m: list[Floats], held: bool = False, teams: tuple[int, ...] = ()
+    ) -> None:
+        """Puts a frame on the bench: sightings of ball and robots, the pose, and the other inputs.
+
+        `teams` are those that the markers of the first robots show.
+        """
         fresh = POSE_DEVIATIONS * self.rng.standard_normal(3)
         self.pose_error = POSE_MEMORY * self.pose_error + math.sqrt(1 - POSE_MEMORY**2) * fresh
         x_m, y_m, heading_rad = (self.pose + self.pose_error).tolist()
@@ -62,8 +67,9 @@ class Robot:
                 visible=True, x_m=float(bx_m), y_m=float(by_m), covariance_m2=spread.tolist(), confidence=0.9
             )
         obstacles = []
-        for other_m in others_m:
+        for number, other_m in enumerate(others_m):
             obstacle = obstacle_t()
+            obstacle.team = teams[number] if number < len(teams) else obstacle_t.TEAM_UNKNOWN
             (ox_m, oy_m), spread = self.in_frame(other_m)
             obstacle.x_m, obstacle.y_m, obstacle.radius_m = float(ox_m), float(oy_m), 0.25
             obstacle.covariance_m2 = spread.tolist()

@@ -93,6 +93,20 @@ def test_phantom_seen_once_changes_nothing() -> None:
     assert tracker.track.state[:2] == pytest.approx((1.0, 1.0), abs=0.02)
 
 
+def test_less_likely_candidate_that_fits_is_the_ball() -> None:
+    """Something orange seems more like a ball than the ball, which robots hide in part."""
+    tracker = BallTracker()
+    here_m, there_m = np.array((1.0, 0.0)), np.array((-3.0, 2.0))
+    for _ in range(20):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.see(Sighting("a", True, here_m, np.eye(2) * 0.02**2))
+    for _ in range(20):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.see(*(Sighting("a", True, place_m, np.eye(2) * 0.02**2) for place_m in (there_m, here_m)))
+        assert tracker.track.state[:2] == pytest.approx(here_m, abs=0.03)
+        assert tracker.age_s == 0.0
+
+
 def test_moved_ball_is_found_with_the_second_sighting() -> None:
     tracker = BallTracker()
     for frame in range(12):

@@ -45,6 +45,15 @@ def test_opponents_contain_neither_mates_nor_oneself() -> None:
             assert np.hypot(*(places - opponent).T).min() < 0.25
 
 
+def test_robot_in_the_own_colour_is_no_opponent() -> None:
+    """A mate whose radio is broken tells no place, but shows its marker."""
+    robot = Robot("cyan1", (2.0, 1.0, math.pi / 2), seed=1)
+    for _ in range(20):
+        robot.sense(None, [np.array((0.0, 1.0)), np.array((2.0, 3.0))], teams=(1, 2))
+        robot.bench.iterate()
+    assert [(one.x_m, one.y_m) for one in robot.world.opponents] == [pytest.approx((2.0, 3.0), abs=0.08)]
+
+
 def test_held_ball_is_in_the_mouth_and_in_the_message() -> None:
     robot = Robot("cyan1", (1.0, -1.0, -math.pi / 2), seed=1)
     for _ in range(4):
