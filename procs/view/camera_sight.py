@@ -10,9 +10,10 @@ import numpy as np
 
 from fwk.web import Newest, Scene
 from lcmtypes.core import frame_t
-from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t, obstacle_t
+from lcmtypes.soccer import ball_candidate_t, ball_percept_t, line_points_t, obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
 from procs.model.ball import RADIUS_M
+from procs.model.robot import TEAM_NUMBERS
 from procs.vision.calibration import MirrorConfig
 from procs.vision.stereo_rig import StereoRig
 
@@ -23,6 +24,7 @@ CALIBRATION = ("mirror", "rig")
 _BALL = "#ffee58"
 _OBSTACLE = "#ff4081"
 _LINE = "#00e5ff"
+_TEAMS = {number: team for team, number in TEAM_NUMBERS.items()}
 _STEPS = 24
 
 
@@ -84,10 +86,21 @@ def _draw_ball(ball: ball_percept_t | None, lens: _MirrorLens, scene: Scene) -> 
     scene.layer("ball")
     if ball is None or not ball.visible:
         return
-    column, row, radius_px = lens.mirror.sphere((ball.x_m, ball.y_m, RADIUS_M), RADIUS_M)
-    x_px, y_px = column + lens.shift_px[0], row + lens.shift_px[1]
-    scene.circle(x_px, y_px, radius_px + 2.0, stroke=_BALL, width_m=1.5)
     words = f"ball {math.hypot(ball.x_m, ball.y_m):.1f} m, {ball.confidence:.0%}"
+    if ball.z_m > 0.0:
+        words += f", {ball.z_m:.1f} m high"
+    _draw_ring(ball, lens, scene, 1.5, words)
+    for other in ball.others:
+        _draw_ring(other, lens, scene, 0.7, f"{other.confidence:.0%}")
+
+
+def _draw_ring(
+    ball: ball_percept_t | ball_candidate_t, lens: _MirrorLens, scene: Scene, width_m: float, words: str
+) -> None:
+    """Draws the outline of what may be the ball, and words above it."""
+    column, row, radius_px = lens.mirror.sphere((ball.x_m, ball.y_m, ball.z_m + RADIUS_M), RADIUS_M)
+    x_px, y_px = column + lens.shift_px[0], row + lens.shift_px[1]
+    scene.circle(x_px, y_px, radius_px + 2.0, stroke=_BALL, width_m=width_m)
     scene.text(x_px, y_px - radius_px - 10.0, words, _BALL, 10.0)
 
 
@@ -99,7 +112,8 @@ def _draw_obstacles(found: obstacle_percepts_t | None, lens: _Lens, scene: Scene
         if np.isfinite(outline).all():
             scene.polygon(points, stroke=_OBSTACLE, width_m=1.5)
             distance_m = math.hypot(obstacle.x_m, obstacle.y_m)
-            scene.text(*points[0], f"{distance_m:.1f} m", _OBSTACLE, 9.0)
+            team = _TEAMS.get(obstacle.team, "")
+            scene.text(*points[0], f"{team} {distance_m:.1f} m".lstrip(), _OBSTACLE, 9.0)
 
 
 def _draw_lines(found: line_points_t | None, lens: _Lens, scene: Scene) -> None:

@@ -59,7 +59,7 @@ def drawn(
         foot = mirror.project(rim * each.radius_m + (each.x_m, each.y_m, 0.0))
         cv2.polylines(picture, [_fine(foot, scale)], True, OBSTACLE, scale, cv2.LINE_AA, _SHIFT)
     if ball.visible:
-        *middle, radius_px = mirror.sphere((ball.x_m, ball.y_m, RADIUS_M), RADIUS_M)
+        *middle, radius_px = mirror.sphere((ball.x_m, ball.y_m, ball.z_m + RADIUS_M), RADIUS_M)
         (place,) = _fine(np.array([middle]), scale)
         radius = round((radius_px + 2.0) * scale * (1 << _SHIFT))
         cv2.circle(picture, place.tolist(), radius, BALL, scale, cv2.LINE_AA, _SHIFT)

@@ -7,7 +7,7 @@ import pytest
 
 from fwk.web import Newest, Scene
 from lcmtypes.core import frame_t
-from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t, obstacle_t
+from lcmtypes.soccer import ball_candidate_t, ball_percept_t, line_points_t, obstacle_percepts_t, obstacle_t
 from procs.view.web import MatchView
 from procs.vision.calibration import MirrorConfig
 
@@ -62,6 +62,19 @@ def test_the_calibration_comes_from_the_settings() -> None:
     away_px = MirrorConfig(height_m=0.5).mirror().radius_px(2.0)
     assert 199.5 - point["x"] == pytest.approx(away_px, abs=1.0)
     assert abs(away_px - MirrorConfig().mirror().radius_px(2.0)) > 5.0
+
+
+def test_height_candidates_and_teams_are_drawn() -> None:
+    ball, other, obstacles, obstacle = ball_percept_t(), ball_candidate_t(), obstacle_percepts_t(), obstacle_t()
+    ball.visible, ball.x_m, ball.z_m, other.x_m, other.confidence = True, 2.0, 0.34, -3.0, 0.4
+    ball.others = [other]
+    obstacle.x_m, obstacle.radius_m, obstacle.team = 3.0, 0.25, obstacle_t.TEAM_MAGENTA
+    obstacles.obstacles = [obstacle]
+    shapes = sight("cyan1/image", image=frame(400, 400), ball_percept=ball, obstacle_percepts=obstacles)
+    rings = [shape for shape in shapes if shape["l"] == "ball" and "r" in shape]
+    assert len(rings) == 2
+    words = [shape["s"] for shape in shapes if "s" in shape]
+    assert words == ["magenta 3.0 m", "ball 2.0 m, 0%, 0.3 m high", "40%"]
 
 
 def test_unseen_balls_are_not_drawn() -> None:
