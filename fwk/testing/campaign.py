@@ -3,14 +3,14 @@
 import json
 import multiprocessing
 import os
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
 from inspect import signature
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, cast, overload
 
 from fwk.lcm.type_registry import put_first, use_types_of
 from fwk.model.parent_death import die_with_parent
@@ -54,6 +54,25 @@ class Evaluation:
         return work(file, time_s, seed, self.sets)
 
 
+class Results(Sequence[Any]):
+    """Results of runs, each read from its file when it is asked for: together they may fill the memory."""
+
+    def __init__(self, files: Sequence[Path]) -> None:
+        self._files = files
+
+    def __len__(self) -> int:
+        return len(self._files)
+
+    @overload
+    def __getitem__(self, index: int) -> Any: ...
+    @overload
+    def __getitem__(self, index: slice) -> "Results": ...
+    def __getitem__(self, index: int | slice) -> Any:
+        if isinstance(index, slice):
+            return Results(self._files[index])
+        return json.loads(self._files[index].read_text())
+
+
 class Campaign:
     """Results of the runs of one launch file in a folder, a file a seed."""
 
@@ -74,9 +93,9 @@ class Campaign:
         """Returns the seeds without a result."""
         return [seed for seed in seeds if not self._file(seed).exists()]
 
-    def results(self, seeds: Iterable[int]) -> list[Any]:
+    def results(self, seeds: Iterable[int]) -> "Results":
         """Returns the results of the seeds that have one, in the order of the seeds."""
-        return [json.loads(self._file(seed).read_text()) for seed in seeds if self._file(seed).exists()]
+        return Results([file for file in map(self._file, seeds) if file.exists()])
 
     def play(
         self, work: Work, file: str, time_s: float, seeds: Iterable[int], executor: Executor
@@ -89,10 +108,10 @@ class Campaign:
             CampaignError: runs failed; all others were played and have their results.
         """
         running = {executor.submit(work, file, time_s, seed): seed for seed in self.missing(seeds)}
-        failures: dict[int, str] = {}
+        count, failures = len(running), dict[int, str]()
         try:
             for future in as_completed(running):
-                seed = running[future]
+                seed = running.pop(future)  # a future keeps its result
                 try:
                     result = future.result()
                 except Exception as error:
@@ -108,7 +127,7 @@ class Campaign:
                 future.cancel()
         if failures:
             causes = "; ".join(f"seed {seed}: {cause}" for seed, cause in sorted(failures.items()))
-            raise CampaignError(f"{len(failures)} of {len(running)} runs failed: {causes}")
+            raise CampaignError(f"{len(failures)} of {count} runs failed: {causes}")
 
     def _keep(self, seed: int, result: Any) -> None:
         """Writes a result in one step: a file is whole or not there."""

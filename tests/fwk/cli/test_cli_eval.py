@@ -132,6 +132,18 @@ def test_results_stay_when_another_run_fails(tmp_path: Path) -> None:
         assert list(again.play(measured, "it", 1.0, [11, 12, 14], executor)) == [14]
 
 
+def test_results_are_read_one_at_a_time(tmp_path: Path) -> None:
+    """A hundred matches together would need gigabytes."""
+    campaign = Campaign(tmp_path, {"file": "it"})
+    for seed in (1, 2, 3):
+        (tmp_path / f"seed-{seed}.json").write_text(f'{{"seed": {seed}}}')
+    results = campaign.results(range(1, 9))
+    (tmp_path / "seed-2.json").write_text('{"seed": "read late"}')
+    assert [result["seed"] for result in results] == [1, "read late", 3]
+    assert (len(results), results[-1]["seed"], [each["seed"] for each in results[1:]]) == (3, 3, ["read late", 3])
+    assert not campaign.results(range(4, 9))
+
+
 def test_early_stop_cancels_runs_that_did_not_begin(tmp_path: Path) -> None:
     begun: list[int] = []
     executor = Queue()
