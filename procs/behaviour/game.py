@@ -61,4 +61,4 @@ def game_of(message: game_state_t, team: Team, frame: Frame) -> Game:
     x_m, y_m = message.ball_x_m, message.ball_y_m
     spot = frame.point(x_m, y_m) if plausible(x_m, y_m) else Point(0.0, 0.0)
     state = _STATES.get(message.state, State.FROZEN)
-    return Game(state, message.stopped, whose, spot, tuple(message.sent_off), len(message.history))
+    return Game(state, message.stopped, whose, spot, tuple(message.sent_off), message.decisions)

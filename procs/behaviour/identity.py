@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lcmtypes.soccer import robot_estimate_t
+from lcmtypes.soccer import mate_estimate_t
 from procs.model.robot import Player, number_of
 from procs.referee.ends import Team, team_number
 
@@ -19,6 +19,6 @@ def number_of_player(robot: str, players: Mapping[str, Player]) -> int:
     return player.number if player else number_of(robot)
 
 
-def number_of_estimate(robot: robot_estimate_t, players: Mapping[str, Player]) -> int:
-    """Returns the number that the world model states, else that of the player; 0 for an opponent."""
-    return robot.number or number_of_player(robot.name, players)
+def number_of_mate(mate: mate_estimate_t, players: Mapping[str, Player]) -> int:
+    """Returns the number that the world model states, else that of the player."""
+    return mate.number or number_of_player(mate.name, players)

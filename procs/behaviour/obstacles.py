@@ -3,8 +3,8 @@
 import math
 from collections.abc import Iterable, Mapping
 
-from lcmtypes.soccer import robot_estimate_t, world_model_t
-from procs.behaviour.identity import number_of_estimate
+from lcmtypes.soccer import mate_estimate_t, robot_estimate_t, world_model_t
+from procs.behaviour.identity import number_of_mate
 from procs.behaviour.path import Disc
 from procs.behaviour.velocity_obstacles import Mover
 from procs.model.ball import BALL
@@ -12,6 +12,7 @@ from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import clamp, plausible
 from procs.model.robot import PLAYERS, ROBOT, Player
 
+_Estimate = mate_estimate_t | robot_estimate_t
 _ROBOT_M = ROBOT.radius_m
 _BALL_M = BALL.radius_m
 _MARGIN_M = 0.12
@@ -63,28 +64,32 @@ def movers(
 
     Of two mates the one with the higher number gives way.
     """
-    return [
-        Mover(
-            Point(robot.x_m + robot.vx_m_s * latency_s, robot.y_m + robot.vy_m_s * latency_s),
-            Point(robot.vx_m_s, robot.vy_m_s),
-            gives_way=number_of_estimate(robot, players) > own_number
-            and math.hypot(robot.vx_m_s, robot.vy_m_s) > _DRIVES_M_S,
-            margin_m=_PASSING_M + _deviation_m(robot),
-        )
-        for robot in (*model.mates, *model.opponents)
-        if plausible(robot.x_m, robot.y_m, robot.vx_m_s, robot.vy_m_s)
-    ]
+    mates = [_mover(mate, latency_s, number_of_mate(mate, players) > own_number) for mate in model.mates if _sane(mate)]
+    return mates + [_mover(opponent, latency_s, False) for opponent in model.opponents if _sane(opponent)]
 
 
-def _deviation_m(robot: robot_estimate_t) -> float:
+def _mover(robot: _Estimate, latency_s: float, gives_way: bool) -> Mover:
+    return Mover(
+        Point(robot.x_m + robot.vx_m_s * latency_s, robot.y_m + robot.vy_m_s * latency_s),
+        Point(robot.vx_m_s, robot.vy_m_s),
+        gives_way=gives_way and math.hypot(robot.vx_m_s, robot.vy_m_s) > _DRIVES_M_S,
+        margin_m=_PASSING_M + _deviation_m(robot),
+    )
+
+
+def _sane(robot: _Estimate) -> bool:
+    return plausible(robot.x_m, robot.y_m, robot.vx_m_s, robot.vy_m_s)
+
+
+def _deviation_m(robot: _Estimate) -> float:
     (xx_m2, _), (_, yy_m2) = robot.covariance_m2
     return min(_UNSURE_M, math.sqrt(max(0.0, xx_m2, yy_m2)))
 
 
-def _robots(estimates: Iterable[robot_estimate_t], own: Point) -> list[Disc]:
+def _robots(estimates: Iterable[_Estimate], own: Point) -> list[Disc]:
     found = []
     for robot in estimates:
-        if not plausible(robot.x_m, robot.y_m, robot.vx_m_s, robot.vy_m_s):
+        if not _sane(robot):
             continue
         ahead_s = min(_FORESIGHT_S, math.dist(own, (robot.x_m, robot.y_m)) / _MEETING_M_S)
         middle = Point(robot.x_m + robot.vx_m_s * ahead_s, robot.y_m + robot.vy_m_s * ahead_s)

@@ -8,8 +8,8 @@ import math
 from collections.abc import Container, Iterable, Mapping
 from typing import NamedTuple
 
-from lcmtypes.soccer import ball_estimate_t, pass_agreement_t, robot_estimate_t, world_model_t
-from procs.behaviour.identity import number_of_estimate, number_of_player
+from lcmtypes.soccer import ball_estimate_t, mate_estimate_t, pass_agreement_t, robot_estimate_t, world_model_t
+from procs.behaviour.identity import number_of_mate, number_of_player
 from procs.model.field import Point
 from procs.model.geometry import plausible, wrap_rad
 from procs.model.robot import PLAYERS, Player
@@ -111,22 +111,21 @@ def view_of(
     if here:
         place, velocity_m_s = frame.point(model.x_m, model.y_m), frame.point(model.vx_m_s, model.vy_m_s)
         own = own._replace(place=place, heading_rad=frame.heading_rad(model.heading_rad), velocity_m_s=velocity_m_s)
-    mates = zip(model.mates, model.mate_roles, model.mate_agreements, strict=True)
     return View(
         here and model.localized,
         own,
         _ball(model.ball, frame),
         tuple(
-            _robot(mate, said, agreed, frame)._replace(number=number_of_estimate(mate, players))
-            for mate, said, agreed in mates
-            if mate.age_s <= mate_timeout_s and _sane(mate)
+            _mate(mate, frame, number_of_mate(mate, players))
+            for mate in model.mates
+            if mate.age_s <= mate_timeout_s and _sane(mate) and plausible(mate.heading_rad)
         ),
-        tuple(_robot(other, "", None, frame) for other in model.opponents if _sane(other)),
+        tuple(_opponent(other, frame) for other in model.opponents if _sane(other)),
     )
 
 
-def _sane(robot: robot_estimate_t) -> bool:
-    return plausible(robot.x_m, robot.y_m, robot.heading_rad, robot.vx_m_s, robot.vy_m_s)
+def _sane(robot: mate_estimate_t | robot_estimate_t) -> bool:
+    return plausible(robot.x_m, robot.y_m, robot.vx_m_s, robot.vy_m_s)
 
 
 def _ball(ball: ball_estimate_t, frame: Frame) -> Ball:
@@ -141,12 +140,18 @@ def _agreement(said: pass_agreement_t, frame: Frame) -> Agreement:
     return Agreement(said.receiver, frame.point(said.x_m, said.y_m), said.passer)
 
 
-def _robot(estimate: robot_estimate_t, role: str, said: pass_agreement_t | None, frame: Frame) -> Robot:
+def _mate(mate: mate_estimate_t, frame: Frame, number: int) -> Robot:
     return Robot(
-        estimate.name,
-        frame.point(estimate.x_m, estimate.y_m),
-        frame.heading_rad(estimate.heading_rad),
-        frame.point(estimate.vx_m_s, estimate.vy_m_s),
-        role,
-        _agreement(said, frame) if said else _SILENT,
+        mate.name,
+        frame.point(mate.x_m, mate.y_m),
+        frame.heading_rad(mate.heading_rad),
+        frame.point(mate.vx_m_s, mate.vy_m_s),
+        mate.role,
+        _agreement(mate.agreement, frame),
+        number,
     )
+
+
+def _opponent(robot: robot_estimate_t, frame: Frame) -> Robot:
+    place, velocity_m_s = frame.point(robot.x_m, robot.y_m), frame.point(robot.vx_m_s, robot.vy_m_s)
+    return Robot("", place, velocity_m_s=velocity_m_s)

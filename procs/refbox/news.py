@@ -1,6 +1,6 @@
 """Commands of a RefBox that lead from one state of the game to the next."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from lcmtypes.soccer import game_event_t, game_state_t
 from procs.model.robot import number_of
@@ -22,16 +22,21 @@ _HALVES = {1: "FIRST_HALF", 2: "SECOND_HALF", 3: "FIRST_HALF_OVERTIME", 4: "SECO
 _CARDS = {game_event_t.YELLOW: "YELLOW_CARD", game_event_t.DOUBLE_YELLOW: "DOUBLE_YELLOW", game_event_t.RED: "RED_CARD"}
 
 
-def news(before: game_state_t | None, now: game_state_t, number: Callable[[str], int] = number_of) -> list[Command]:
+def news(
+    before: game_state_t | None,
+    now: game_state_t,
+    events: Sequence[game_event_t] = (),
+    number: Callable[[str], int] = number_of,
+) -> list[Command]:
     """Returns the commands between two states, in their order; without a state before, those that lead to this one.
 
-    `number` gives the number on the back of the robot with a namespace.
+    `events` is the history of the match; `number` gives the number on the back of the robot with a namespace.
     """
     if before is None:
         return _half(now) + _stopped(now) + ([] if now.stopped else [Command("START")])
-    if len(now.history) < len(before.history):
+    if now.decisions < before.decisions:
         return [Command("RESET"), *news(None, now)]
-    commands = _scores(before, now) + _cards(before, now, number)
+    commands = _scores(before, now) + _cards(events[before.decisions : now.decisions], number)
     breaks = (game_state_t.HALF_TIME, game_state_t.FROZEN)
     if now.state != before.state and now.state in breaks:
         return [*commands, Command("STOP"), Command("HALF_TIME" if now.state == game_state_t.HALF_TIME else "END_GAME")]
@@ -64,10 +69,9 @@ def _scores(before: game_state_t, now: game_state_t) -> list[Command]:
     return commands
 
 
-def _cards(before: game_state_t, now: game_state_t, number: Callable[[str], int]) -> list[Command]:
-    new = now.history[len(before.history) :]
+def _cards(events: Sequence[game_event_t], number: Callable[[str], int]) -> list[Command]:
     return [
         Command(_CARDS[event.card], TEAMS.get(event.team, ""), number(event.robot))
-        for event in new
+        for event in events
         if event.card in _CARDS
     ]

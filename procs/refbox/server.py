@@ -6,7 +6,7 @@ import socket
 from pydantic import Field
 
 from fwk import Component, Config, Logger, Reads, channel
-from lcmtypes.soccer import game_state_t
+from lcmtypes.soccer import game_state_t, match_history_t
 from procs.model.robot import PLAYERS, Players, number_of
 from procs.refbox.news import news
 from procs.refbox.protocol import PORT, Command, encode
@@ -43,6 +43,7 @@ class RefBoxServer(Component):
     config: ServerConfig
     log: Logger
     game_state: Reads[game_state_t] = channel("world/game_state")
+    match_history: Reads[match_history_t] = channel("world/match_history")
 
     def init(self) -> None:
         """Listens.
@@ -64,7 +65,8 @@ class RefBoxServer(Component):
             return
         now = self.game_state.value
         self._hear()
-        self._send(news(self._before, now, self._number), list(self._stations))
+        events = self.match_history.value.events
+        self._send(news(self._before, now, events, self._number), list(self._stations))
         self._before = now
         newcomers = self._admit()
         self._send([Command("WELCOME"), *news(None, now)], newcomers)

@@ -8,6 +8,7 @@ from lcmtypes.soccer import (
     ground_truth_t,
     match_event_t,
     match_events_t,
+    match_history_t,
     referee_command_t,
 )
 from procs.model.field import Point
@@ -43,6 +44,8 @@ class Referee(Component):
     ground_truth: Reads[ground_truth_t]
     referee_command: Serves[referee_command_t]
     game_state: Writes[game_state_t]
+    match_history: Writes[match_history_t]
+    """Written when a decision is added, and in the first iteration."""
     ball_placement: Writes[ball_placement_t]
 
     def init(self) -> None:
@@ -50,6 +53,7 @@ class Referee(Component):
         self._placed = 0
         self._before_us = -1
         self._names = Names(self.config.players)
+        self._has_grown = False  # the history, since it was written
         self._record(Call(self._whistle.state, self._whistle.team))
 
     def loop(self) -> None:
@@ -63,6 +67,7 @@ class Referee(Component):
             self._record(call)
         self._obey(sight)
         self._write_state()
+        self._write_history()
         if whistle.placements != self._placed:
             self._placed = placement_id = whistle.placements
             placement = self.ball_placement.value
@@ -96,7 +101,7 @@ class Referee(Component):
                 command.reject(refused)
                 continue
             if asked.name == "reset":
-                self.game_state.value.history = []
+                self.match_history.value.events = []
             for call in self._whistle.calls:
                 self._record(call)
             command.done()
@@ -108,7 +113,8 @@ class Referee(Component):
         event.half, event.time_in_half_s = whistle.half, whistle.time_in_half_s
         event.robot, event.reason = self._names.outside(call.robot), call.reason
         if call.state not in (State.HALF_TIME, State.FROZEN):
-            self.game_state.value.history.append(event)
+            self.match_history.value.events.append(event)
+            self._has_grown = True
         if not call.goal:
             self.log.info(self._words(call))
 
@@ -131,7 +137,13 @@ class Referee(Component):
         game.time_in_half_s, game.time_in_state_s = whistle.time_in_half_s, whistle.time_in_state_s
         game.ball_x_m, game.ball_y_m = whistle.spot
         game.sent_off = self._names.all_outside(whistle.cards.sent_off)
+        game.decisions = len(self.match_history.value.events)
         self.game_state.write()
+
+    def _write_history(self) -> None:
+        if self._has_grown:
+            self._has_grown = False
+            self.match_history.write()
 
 
 def _event(event: match_event_t, names: Names) -> Event:

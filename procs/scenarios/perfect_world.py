@@ -7,6 +7,7 @@ from lcmtypes.soccer import (
     ball_estimate_t,
     ground_truth_t,
     line_points_t,
+    mate_estimate_t,
     obstacle_percepts_t,
     robot_estimate_t,
     role_t,
@@ -65,26 +66,20 @@ class PerfectWorldModel(Component):
         ball.covariance = np.diag([place_m2, place_m2, velocity_m2_s2, velocity_m2_s2]).tolist()
         model.ball = ball
         others = [each for each in truth.robots if each.name != robot]
-        model.mates = [_estimate(each) for each in others if team_in(each) == team_in(own)]
-        model.opponents = [_estimate(each) for each in others if team_in(each) != team_in(own)]
-        for opponent in model.opponents:
-            opponent.name = ""
         said = {name: role.value for name, role in self.role.items()}
-        silent = role_t()
-        silent.role = ABSENT
-        model.mate_roles = [said.get(mate.name, silent).role for mate in model.mates]
-        model.mate_agreements = [said.get(mate.name, silent).agreement for mate in model.mates]
+        silent = role_t(role=ABSENT)
+        model.mates = [_mate(each, said.get(each.name, silent)) for each in others if team_in(each) == team_in(own)]
+        model.opponents = [_opponent(each) for each in others if team_in(each) != team_in(own)]
         self.world_model.value = model
         self.world_model.write()
 
 
-def _estimate(robot: true_robot_t) -> robot_estimate_t:
-    estimate = robot_estimate_t()
-    estimate.name, estimate.x_m, estimate.y_m, estimate.heading_rad = (
-        robot.name,
-        robot.x_m,
-        robot.y_m,
-        robot.heading_rad,
-    )
+def _mate(robot: true_robot_t, said: role_t) -> mate_estimate_t:
+    estimate = mate_estimate_t(name=robot.name, role=said.role, agreement=said.agreement)
+    estimate.x_m, estimate.y_m, estimate.heading_rad = robot.x_m, robot.y_m, robot.heading_rad
     estimate.vx_m_s, estimate.vy_m_s = robot.vx_m_s, robot.vy_m_s
     return estimate
+
+
+def _opponent(robot: true_robot_t) -> robot_estimate_t:
+    return robot_estimate_t(x_m=robot.x_m, y_m=robot.y_m, vx_m_s=robot.vx_m_s, vy_m_s=robot.vy_m_s)

@@ -42,7 +42,7 @@ def _state(newest: Newest) -> Callable[..., bool]:
 
 @reads_messages
 def _reasons(newest: Newest) -> list[str]:
-    return [event.reason for event in newest("world/game_state").history if event.reason]
+    return [event.reason for event in newest("world/match_history").events if event.reason]
 
 
 def _place(newest: Newest, what: Any) -> Point:

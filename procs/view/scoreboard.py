@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
-from lcmtypes.soccer import game_event_t, game_state_t
+from lcmtypes.soccer import game_event_t, game_state_t, match_history_t
 from procs.model.field import field_of
 from procs.view.field_drawing import field_drawing
 
@@ -12,9 +12,10 @@ Newest = Callable[[str], Any]
 """Gives the newest message of a channel, decoded, or None."""
 
 GAME_STATE = "world/game_state"
+HISTORY = "world/match_history"
 TRUTH = "world/ground_truth"
 MEASURES = "world/field"
-CHANNELS = (GAME_STATE, TRUTH, MEASURES)
+CHANNELS = (GAME_STATE, HISTORY, TRUTH, MEASURES)
 """Channels whose messages the display passes to this module."""
 
 STATES = {
@@ -76,18 +77,20 @@ def summary(newest: Newest) -> list[str]:
     leader = "cyan" if state.score_cyan > state.score_magenta else "magenta"
     over = state.state == game_state_t.FROZEN and state.half > 1
     verdict = "a draw" if state.score_cyan == state.score_magenta else f"{leader} {'wins' if over else 'leads'}"
-    return [score(state), f"{verdict} after {play_time(state.time_in_half_s)} of half {state.half}", *_events(state)]
+    told = _events(newest(HISTORY) or match_history_t(), state.half)
+    return [score(state), f"{verdict} after {play_time(state.time_in_half_s)} of half {state.half}", *told]
 
 
-def _events(state: game_state_t) -> list[str]:
+def _events(history: match_history_t, half: int) -> list[str]:
+    """Returns the lines about goals, whistles and cards; `half` is that of the newest state."""
     goals = [
-        f"{play_time(event.time_in_half_s)}{f' of half {event.half}' if state.half > 1 else ''} {TEAMS[event.team]}"
-        for event in state.history
+        f"{play_time(event.time_in_half_s)}{f' of half {event.half}' if half > 1 else ''} {TEAMS[event.team]}"
+        for event in history.events
         if event.goal and event.team in TEAMS
     ]
-    calls = [event for event in state.history if not event.goal and not event.card]
+    calls = [event for event in history.events if not event.goal and not event.card]
     whistles = Counter(STATES.get(event.state, f"state {event.state}") for event in calls)
     counted = [f"{name} {count}" for name, count in sorted(whistles.items(), key=lambda item: (-item[1], item[0]))]
-    cards = [f"{CARDS[event.card]} {event.robot}" for event in state.history if event.card in CARDS]
+    cards = [f"{CARDS[event.card]} {event.robot}" for event in history.events if event.card in CARDS]
     lists = (("goals", goals), ("whistles", counted), ("cards", cards))
     return [f"{name}: {', '.join(items)}" for name, items in lists if items]

@@ -3,7 +3,10 @@
 import numpy as np
 
 from fwk import Component, Logger, Reads, TransformError, Transforms, Writes
-from lcmtypes.soccer import ball_percept_t, ball_spot_t
+from lcmtypes.robot import point_t
+from lcmtypes.soccer import ball_percept_t
+
+_WORLD = "world"
 
 
 class BallSpot(Component):
@@ -12,25 +15,26 @@ class BallSpot(Component):
     stage = "think"
     ball_percept: Reads[ball_percept_t]
     tf: Transforms
-    ball_spot: Writes[ball_spot_t]
+    ball_spot: Writes[point_t]
+    """The ball's lowest point in the world frame; written only when the ball is seen and the pose is known."""
     log: Logger
 
     def init(self) -> None:
         self._trouble = ""
 
     def loop(self) -> None:
-        if not self.ball_percept.refreshed:
-            return
         percept, spot = self.ball_percept.value, self.ball_spot.value
-        spot.visible = False
-        if percept.visible:
-            try:
-                to_world = self.tf.lookup("world", "base", self.ball_percept.header.time_us)
-                spot.x_m, spot.y_m = to_world.apply(np.array([percept.x_m, percept.y_m, 0.0]))[:2].tolist()
-                spot.visible = True
-                self._trouble = ""
-            except TransformError as error:
-                self._tell(error)
+        if not (self.ball_percept.refreshed and percept.visible):
+            return
+        spot.capture_us = percept.capture_us or self.ball_percept.header.time_us
+        try:
+            to_world = self.tf.lookup(_WORLD, "base", spot.capture_us)
+        except TransformError as error:
+            self._tell(error)
+            return
+        self._trouble = ""
+        spot.frame = _WORLD
+        spot.x_m, spot.y_m, spot.z_m = to_world.apply(np.array([percept.x_m, percept.y_m, percept.z_m])).tolist()
         self.ball_spot.write()
 
     def _tell(self, error: TransformError) -> None:

@@ -4,7 +4,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from lcmtypes.soccer import ball_estimate_t, obstacle_t, robot_estimate_t, team_message_t, world_model_t
+from lcmtypes.soccer import (
+    ball_estimate_t,
+    mate_estimate_t,
+    obstacle_t,
+    robot_estimate_t,
+    team_message_t,
+    world_model_t,
+)
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.own_view import OwnView
 from procs.world_model.robot_tracks import RobotTracks
@@ -28,8 +35,6 @@ def fill_world_model(
     message.ball = _ball(ball)
     rows = zip(mates, team[: len(mates)], strict=True)
     message.mates = [_mate(mate, place, now_s) for mate, place in rows]
-    message.mate_roles = [mate.role for mate in mates]
-    message.mate_agreements = [mate.agreement for mate in mates]
     message.opponents = _opponents(opponents)
 
 
@@ -69,9 +74,10 @@ def _ball(ball: BallTracker) -> ball_estimate_t:
     return estimate
 
 
-def _mate(mate: Mate, place: PlaceRow, now_s: float) -> robot_estimate_t:
-    estimate = robot_estimate_t()
+def _mate(mate: Mate, place: PlaceRow, now_s: float) -> mate_estimate_t:
+    estimate = mate_estimate_t()
     estimate.name, estimate.number = mate.name, mate.number
+    estimate.role, estimate.agreement = mate.role, mate.agreement
     estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s, xx_m2, xy_m2, yx_m2, yy_m2 = place
     estimate.heading_rad = mate.heading_rad
     estimate.covariance_m2 = [[xx_m2, xy_m2], [yx_m2, yy_m2]]

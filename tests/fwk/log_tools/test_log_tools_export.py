@@ -23,7 +23,7 @@ from fwk.log_tools.plain import json_schema, of_plain, plain
 from fwk.log_tools.selection import Selection
 from fwk.recording.log_info import log_info
 from lcmtypes.core import frame_events_t, log_t, picture_t, transform_t, transforms_t
-from lcmtypes.robot import gps_fix_t, laser_scan_t, odometry_t
+from lcmtypes.robot import gps_fix_t, joint_state_t, laser_scan_t, odometry_t
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t, pose_t, world_model_t
 from tests.fwk.log_tools.log_tools_made import PLAIN, heard, recording
 from tests.fwk.recording.recording_made import PERIOD_US, odometry, write
@@ -49,7 +49,7 @@ def test_columns_follow_the_members_of_a_type() -> None:
     assert names[:7] == [f"header.{each}" for each in ("tick", "sequence", "time_us", "stage", "writer")] + [
         "localized", "x_m",
     ]  # fmt: skip
-    assert {"ball.x_m", "ball.covariance.3.0", "mates", "mate_roles"} <= set(names)
+    assert {"ball.x_m", "ball.covariance.3.0", "mates", "ball_holder"} <= set(names)
     message = world_model_t()
     message.ball.covariance[3][0] = 7.5
     (column,) = [column for column in columns_of(world_model_t) if column.name == "ball.covariance.3.0"]
@@ -75,14 +75,19 @@ def test_csv_has_a_file_for_each_channel(tmp_path: Path) -> None:
 def test_parquet_has_typed_columns_and_lists(tmp_path: Path) -> None:
     out, _ = exported(recording(tmp_path / "log", ticks=3), Format.PARQUET, "cyan1/*")
     table = parquet.read_table(out / "cyan1" / "world_model.parquet")
-    kinds = {
-        name: str(table.schema.field(name).type) for name in ("log_time_us", "ball.known", "ball.x_m", "mate_roles")
-    }
-    assert kinds == {
-        "log_time_us": "int64", "ball.known": "bool", "ball.x_m": "double", "mate_roles": "list<element: string>",
-    }  # fmt: skip
+    kinds = {name: str(table.schema.field(name).type) for name in ("log_time_us", "ball.known", "ball.x_m")}
+    assert kinds == {"log_time_us": "int64", "ball.known": "bool", "ball.x_m": "double"}
     row = table.to_pylist()[2]
-    assert (row["ball.x_m"], row["mates"][0]["name"], row["mate_roles"]) == (pytest.approx(0.3), "cyan2", ["attacker"])
+    assert (row["ball.x_m"], row["mates"][0]["name"]) == (pytest.approx(0.3), "cyan2")
+
+
+def test_parquet_keeps_lists_of_texts(tmp_path: Path) -> None:
+    joints = joint_state_t(n_joints=2, names=["hip", "knee"], positions=[0.0] * 2, velocities=[0.0] * 2)
+    joints.efforts = [0.0] * 2
+    out, _ = exported(write(tmp_path / "log", [("arm/joints", joints.encode(), PERIOD_US)]), Format.PARQUET)
+    table = parquet.read_table(out / "arm" / "joints.parquet")
+    assert str(table.schema.field("names").type) == "list<element: string>"
+    assert table.to_pylist()[0]["names"] == ["hip", "knee"]
 
 
 def test_json_lines_have_channel_type_and_message(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from fwk.lcm import messages
 from fwk.lcm.event_log import LogWriter
 from lcmtypes.core import log_t
 from lcmtypes.robot import odometry_t
-from lcmtypes.soccer import ball_estimate_t, pass_agreement_t, robot_estimate_t, world_model_t
+from lcmtypes.soccer import ball_estimate_t, mate_estimate_t, world_model_t
 
 Entry = tuple[str, bytes, int]
 """Channel, message, logical time in µs."""
@@ -53,9 +53,7 @@ def world_model(tick: int, robot: int) -> world_model_t:
     made = world_model_t()
     made.ball = ball_estimate_t()
     made.ball.known, made.ball.x_m, made.ball.vx_m_s = True, 0.1 * tick, 2.0
-    mate = robot_estimate_t()
-    mate.name, mate.x_m = f"cyan{3 - robot}", 0.5
-    made.mates, made.mate_roles, made.mate_agreements = [mate], ["attacker"], [pass_agreement_t()]
+    made.mates = [mate_estimate_t(name=f"cyan{3 - robot}", x_m=0.5, role="attacker")]
     return made
 
 

@@ -96,7 +96,7 @@ def test_a_changed_value_is_named_with_its_field_and_both_values(tmp_path: Path)
 def test_a_list_of_other_length_is_named_by_its_count(tmp_path: Path) -> None:
     made, other = entries(), entries()
     model = world_model(7, 1)
-    model.mates, model.mate_roles, model.mate_agreements = [], [], []
+    model.mates = []
     other[at(other, "cyan1/world_model", 7)] = entry("cyan1/world_model", model, 7)
     assert text_of(tmp_path, made, other).endswith("n_mates is 1 in A, 0 in B")
 

@@ -12,6 +12,7 @@ from fwk.web.rates import Rates
 from fwk.web.sending import FieldError, examples_of, fields_of, value_of
 from fwk.web.words import age, rows_of, seconds, size
 from lcmtypes.core import log_t
+from lcmtypes.robot import joint_state_t
 from lcmtypes.soccer import place_ball_t, world_model_t
 
 
@@ -22,14 +23,14 @@ def test_a_form_has_the_fields_that_people_fill_in() -> None:
     fields = fields_of(world_model_t)
     assert "n_mates" not in fields
     assert fields["localized"] == ("boolean", True)
-    assert fields["mate_roles"] == ("string", False)
+    assert fields_of(joint_state_t)["names"] == ("string", False)
 
 
 def test_lists_and_structures_begin_with_their_empty_value() -> None:
     examples = examples_of(world_model_t)
     ball = json.loads(examples["ball"])
     assert (ball["x_m"], ball["covariance"]) == (0.0, [[0.0] * 4] * 4)
-    assert examples["mate_roles"] == "[]"
+    assert examples["mates"] == examples_of(joint_state_t)["names"] == "[]"
     assert "localized" not in examples
     typed = examples | {"ball": json.dumps(ball | {"x_m": 1.5})}
     values = {name: value_of(name, *fields_of(world_model_t)[name], text) for name, text in typed.items()}

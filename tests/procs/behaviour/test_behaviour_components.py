@@ -13,8 +13,8 @@ from lcmtypes.soccer import (
     ball_estimate_t,
     drive_target_t,
     game_state_t,
+    mate_estimate_t,
     navigator_state_t,
-    pass_agreement_t,
     robot_estimate_t,
     skill_status_t,
 )
@@ -317,13 +317,13 @@ def senseless(value: float, message: Any) -> Any:
             setattr(message, name, value)
         elif kind == "boolean":
             setattr(message, name, name != "stop")
-        elif name == "ball":
+        elif name in ("ball", "agreement"):
             senseless(value, getattr(message, name))
         elif kind.endswith("robot_estimate_t"):
             setattr(message, name, [senseless(value, robot_estimate_t()) for _ in range(3)])
+        elif kind.endswith("mate_estimate_t"):
+            setattr(message, name, [senseless(value, mate_estimate_t(role="attacker")) for _ in range(3)])
     if hasattr(message, "mates"):
-        message.mate_roles = ["attacker"] * 3
-        message.mate_agreements = [senseless(value, pass_agreement_t()) for _ in range(3)]
         message.localized = True
     return message
 

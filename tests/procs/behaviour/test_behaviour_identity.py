@@ -10,8 +10,7 @@ from lcmtypes.soccer import (
     ball_estimate_t,
     drive_target_t,
     game_state_t,
-    pass_agreement_t,
-    robot_estimate_t,
+    mate_estimate_t,
     world_model_t,
 )
 from procs.behaviour import greedy, roles
@@ -39,10 +38,8 @@ FIELD = Field()
 
 def model_of(mate: str, x_m: float, speed_m_s: float = 0.0) -> world_model_t:
     """Returns the world model of a localized robot that has one mate, at (x_m, 0)."""
-    estimate = robot_estimate_t(name=mate, x_m=x_m, vx_m_s=speed_m_s)
-    model = world_model_t(localized=True, mates=[estimate], n_mates=1, mate_roles=["defender"])
-    model.mate_agreements = [pass_agreement_t()]
-    return model
+    estimate = mate_estimate_t(name=mate, x_m=x_m, vx_m_s=speed_m_s, role="defender")
+    return world_model_t(localized=True, mates=[estimate], n_mates=1)
 
 
 def seen_by(robot: str, mate: str) -> View:

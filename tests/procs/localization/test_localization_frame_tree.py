@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fwk import Component, TransformError, Writes
+from fwk import Clock, Component, TransformError, Writes
 from fwk.testing import Bench, MemorySystem
 from lcmtypes.core import transforms_t
 from lcmtypes.soccer import ball_percept_t, pose_t
@@ -15,18 +15,36 @@ from procs.world_model.ball_spot import BallSpot
 
 
 class Senses(Component):
-    """Drives one metre a tick along x and sees the ball two metres ahead."""
+    """Drives one metre a tick along x and sees the ball two metres ahead, in the air."""
 
     stage = "sensor_process"
+    seen = True
     pose: Writes[pose_t]
     ball_percept: Writes[ball_percept_t]
 
     def loop(self) -> None:
         self.pose.value.x_m += 1.0
         self.pose.value.localized = True
-        self.ball_percept.value.visible, self.ball_percept.value.x_m = True, 2.0
+        self.ball_percept.value.visible, self.ball_percept.value.x_m = self.seen, 2.0
+        self.ball_percept.value.z_m = 0.5
         self.pose.write()
         self.ball_percept.write()
+
+
+class Delayed(Senses):
+    """Sees the ball in pictures that are 0.1 s old."""
+
+    clock: Clock
+
+    def loop(self) -> None:
+        self.ball_percept.value.capture_us = max(50_000, self.clock.now_us - 100_000)
+        super().loop()
+
+
+class Blind(Senses):
+    """Drives and does not see the ball."""
+
+    seen = False
 
 
 def edges(bench: Bench) -> dict[tuple[str, str], Any]:
@@ -62,8 +80,8 @@ def test_transform_lookups_use_the_time_of_the_input() -> None:
     system = MemorySystem({"r/senses": Senses, "r/spot": BallSpot, "r/tree": FrameTree})
     spot = system.runners["r/spot"].component
     system.tick(5)
-    sent = [system.newest("r/ball_spot")]
-    assert [(each.visible, each.x_m, each.y_m) for each in sent] == [(True, 7.0, 0.0)]
+    sent = system.newest("r/ball_spot")
+    assert (sent.frame, sent.capture_us, sent.x_m, sent.y_m, sent.z_m) == ("world", 250_000, 7.0, 0.0, 0.5)
     tf = spot.tf  # type: ignore[attr-defined]
     assert tf.frames == ["base", "camera", "kicker", "world"]
     assert tf.lookup("world", "camera", 125_000).apply(np.zeros(3)) == pytest.approx((2.5, 0.0, 0.75))
@@ -75,5 +93,19 @@ def test_without_a_pose_the_spot_states_the_reason_once() -> None:
     for _ in range(3):
         bench.port("ball_percept").put(visible=True, x_m=1.0)
         bench.iterate()
-    assert [each.visible for each in bench.port("ball_spot").sent] == [False] * 3
+    assert bench.port("ball_spot").sent == []
     assert [line.text for line in bench.logged] == ["no spot of the ball: no frame 'world'; there is none"]
+
+
+def test_spot_is_where_the_ball_was_at_the_exposure() -> None:
+    system = MemorySystem({"r/senses": Delayed, "r/spot": BallSpot, "r/tree": FrameTree})
+    system.tick(5)
+    sent = system.newest("r/ball_spot")
+    assert (sent.header.time_us, sent.capture_us, sent.x_m) == (250_000, 150_000, 5.0)
+
+
+def test_ball_that_is_not_seen_has_no_spot() -> None:
+    system = MemorySystem({"r/senses": Blind, "r/spot": BallSpot, "r/tree": FrameTree})
+    system.tick(5)
+    assert system.sent["r/ball_spot"] == []
+    assert not system.logged

@@ -180,7 +180,11 @@ def test_card_is_sent_with_the_number_of_the_player() -> None:
         show(bench, game_state_t.PLAY, 0, False)
         card = game_event_t()
         card.card, card.team, card.robot = game_event_t.RED, game_state_t.TEAM_MAGENTA, "anna"
-        bench.port("game_state").put(state=game_state_t.PLAY, half=1, history=[card])
-        bench.iterate()
-        assert station.heard(4)[-1] == {"command": "RED_CARD", "targetTeam": MAGENTA, "robotID": 7}
+        bench.port("match_history").put(events=[card])
+        for kind in (game_state_t.PLAY, game_state_t.PLAY, game_state_t.HALF_TIME):  # one new event
+            bench.port("game_state").put(state=kind, half=1, decisions=1)
+            bench.iterate()
+        heard = station.heard(6)[3:]
+        assert heard[0] == {"command": "RED_CARD", "targetTeam": MAGENTA, "robotID": 7}
+        assert [each["command"] for each in heard] == ["RED_CARD", "STOP", "HALF_TIME"]
     bench.finalize()

@@ -87,15 +87,13 @@ def test_commands_between_states(before: game_state_t | None, now: game_state_t,
 
 
 def test_card_names_team_and_robot() -> None:
-    now, event = state(game_state_t.PLAY, stopped=False), game_event_t()
+    now, event = state(game_state_t.PLAY, stopped=False, decisions=1), game_event_t()
     event.card, event.team, event.robot = game_event_t.DOUBLE_YELLOW, game_state_t.TEAM_MAGENTA, "magenta4"
-    now.history = [event]
-    assert news(PLAY, now) == [Command("DOUBLE_YELLOW", "magenta", 4)]
+    assert news(PLAY, now, [event]) == [Command("DOUBLE_YELLOW", "magenta", 4)]
+    assert news(now, now, [event]) == []
 
 
 def test_match_that_begins_anew_is_a_reset() -> None:
-    before = state(game_state_t.PLAY, stopped=False, score_cyan=2)
-    before.history = [game_event_t(), game_event_t()]
-    now = state(game_state_t.KICK_OFF, game_state_t.TEAM_CYAN)
-    now.history = [game_event_t()]
-    assert [command.name for command in news(before, now)] == ["RESET", "FIRST_HALF", "KICKOFF"]
+    before = state(game_state_t.PLAY, stopped=False, score_cyan=2, decisions=2)
+    now = state(game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, decisions=1)
+    assert [command.name for command in news(before, now, [game_event_t()])] == ["RESET", "FIRST_HALF", "KICKOFF"]

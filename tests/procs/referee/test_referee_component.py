@@ -4,10 +4,13 @@ from typing import Any
 
 import pytest
 
-from fwk.testing import Bench
+from fwk import Component, Reads, channel
+from fwk.lcm import messages
+from fwk.testing import Bench, MemorySystem
 from lcmtypes.core import answer_t
-from lcmtypes.soccer import game_event_t, game_state_t, match_event_t, true_robot_t
+from lcmtypes.soccer import game_event_t, game_state_t, match_event_t, match_history_t, true_robot_t
 from procs.referee.referee import Referee
+from procs.simulation.simulator import Simulator
 
 
 def make(kind: int, robot: str = "cyan2", x_m: float = 6.0) -> match_event_t:
@@ -18,6 +21,12 @@ def make(kind: int, robot: str = "cyan2", x_m: float = 6.0) -> match_event_t:
 
 def state(bench: Bench) -> Any:
     return bench.port("game_state").sent[-1]
+
+
+def history(bench: Bench) -> list[game_event_t]:
+    events: list[game_event_t] = bench.port("match_history").sent[-1].events
+    assert state(bench).decisions == len(events)
+    return events
 
 
 def playing() -> Bench:
@@ -156,7 +165,48 @@ def test_reset_begins_the_match_anew() -> None:
     now = state(bench)
     assert (now.score_cyan, now.half, now.cyan_side, now.time_in_half_s) == (0, 1, -1, 0.0)
     assert (now.state, now.state_team, now.stopped) == (game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, True)
-    assert [each.goal for each in now.history] == [False]
+    assert [each.goal for each in history(bench)] == [False]
+
+
+def test_history_is_written_at_first_and_when_it_grows() -> None:
+    bench = Bench(Referee, "world/referee")
+    bench.iterate()
+    assert [each.state for each in history(bench)] == [game_state_t.KICK_OFF]
+    bench.iterate(5)
+    assert len(bench.port("match_history").sent) == 1
+    bench.port("referee_command").put(name="goal", team="cyan")
+    bench.iterate(5)
+    assert len(bench.port("match_history").sent) == 2
+    assert [each.goal for each in history(bench)] == [False, True, False]
+
+
+def test_history_that_begins_anew_is_written() -> None:
+    bench = Bench(Referee, "world/referee")
+    bench.iterate(3)
+    bench.port("referee_command").put(name="reset")
+    bench.iterate(3)
+    assert [len(each.events) for each in bench.port("match_history").sent] == [1, 1]
+
+
+class Reader(Component):
+    """Notes how many events of the history it knows."""
+
+    stage = "think"
+    match_history: Reads[match_history_t] = channel("world/match_history")
+
+    def init(self) -> None:
+        self.known: list[int] = []
+
+    def loop(self) -> None:
+        self.known.append(len(self.match_history.value.events))
+
+
+def test_reader_that_comes_late_has_the_history() -> None:
+    components = {"world/referee": Referee, "world/simulator": Simulator, "a/reader": Reader}
+    system = MemorySystem(components, turns={"a/reader": (20, 0)})
+    system.tick(20)
+    assert [messages.tick_and_sequence_of(each) for each in system.sent["world/match_history"]] == [(1, 1)]
+    assert system.runners["a/reader"].component.known == [1]  # type: ignore[attr-defined]
 
 
 PLAYERS = {
@@ -192,7 +242,7 @@ def test_teams_and_numbers_are_those_of_the_players() -> None:
     bench.iterate()
     now = state(bench)
     assert (now.score_cyan, now.score_magenta, now.sent_off) == (1, 0, ["cyan2"])
-    assert (now.history[-1].robot, now.history[-1].team) == ("cyan2", game_state_t.TEAM_MAGENTA)
+    assert (history(bench)[-1].robot, history(bench)[-1].team) == ("cyan2", game_state_t.TEAM_MAGENTA)
 
 
 def test_player_on_the_field_has_the_number() -> None:
@@ -231,5 +281,5 @@ def test_second_yellow_card_by_hand_is_double() -> None:
         bench.port("referee_command").put(name="yellow_card", robot="dora")
         bench.iterate()
         assert state(bench).sent_off == expected
-    kinds = [event.card for event in state(bench).history if event.card]
+    kinds = [event.card for event in history(bench) if event.card]
     assert kinds == [game_event_t.YELLOW, game_event_t.DOUBLE_YELLOW, game_event_t.YELLOW]

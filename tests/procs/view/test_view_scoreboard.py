@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from lcmtypes.soccer import game_event_t, game_state_t
+from lcmtypes.soccer import game_event_t, game_state_t, match_history_t
 from procs.view.scoreboard import STATES, headline, play_time, summary
 
 
@@ -14,6 +14,10 @@ def state(**fields: Any) -> game_state_t:
     for name, value in fields.items():
         setattr(made, name, value)
     return made
+
+
+def summary_of(state: game_state_t, *events: game_event_t) -> list[str]:
+    return summary({"world/game_state": state, "world/match_history": match_history_t(events=[*events])}.get)
 
 
 def test_headline_of_a_match() -> None:
@@ -51,12 +55,16 @@ def test_without_a_referee_there_is_no_headline() -> None:
 )
 def test_summary_names_the_leader(cyan: int, magenta: int, words: str) -> None:
     now = state(score_cyan=cyan, score_magenta=magenta, half=2, time_in_half_s=900.0)
-    assert summary(lambda _: now) == [f"CYAN {cyan} : {magenta} MAGENTA", f"{words} after 15:00 of half 2"]
+    assert summary_of(now) == [f"CYAN {cyan} : {magenta} MAGENTA", f"{words} after 15:00 of half 2"]
 
 
 def test_after_the_final_whistle_the_summary_names_the_winner() -> None:
     now = state(score_cyan=2, score_magenta=1, half=2, state=game_state_t.FROZEN, time_in_half_s=900.0)
-    assert summary(lambda _: now)[1] == "cyan wins after 15:00 of half 2"
+    assert summary_of(now)[1] == "cyan wins after 15:00 of half 2"
+
+
+def test_summary_without_a_history_names_score_and_leader() -> None:
+    assert len(summary({"world/game_state": state(score_cyan=1)}.get)) == 2
 
 
 def test_long_halves_keep_counting_minutes() -> None:
@@ -64,22 +72,20 @@ def test_long_halves_keep_counting_minutes() -> None:
 
 
 def test_summary_lists_the_goals_and_counts_the_whistles() -> None:
-    state = game_state_t()
-    state.half, state.score_magenta = 1, 1
+    events = []
     for goal, kind, team, time_s in [
         (False, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, 0.0),
         (True, game_state_t.PLAY, game_state_t.TEAM_MAGENTA, 19.4),
         (False, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, 19.4),
         (False, game_state_t.CORNER_KICK, game_state_t.TEAM_CYAN, 40.0),
     ]:
-        event = game_event_t()
-        event.goal, event.state, event.team, event.half, event.time_in_half_s = goal, kind, team, 1, time_s
-        state.history.append(event)
-    assert summary(lambda _: state)[2:] == ["goals: 00:19 magenta", "whistles: kick-off 2, corner kick 1"]
+        events.append(game_event_t(goal=goal, state=kind, team=team, half=1, time_in_half_s=time_s))
+    assert summary_of(state(score_magenta=1), *events)[2:] == [
+        "goals: 00:19 magenta",
+        "whistles: kick-off 2, corner kick 1",
+    ]
 
 
 def test_summary_lists_the_cards() -> None:
-    state, event = game_state_t(), game_event_t()
-    event.card, event.robot, event.team, event.half = game_event_t.YELLOW, "cyan3", game_state_t.TEAM_CYAN, 1
-    state.half, state.history = 1, [event]
-    assert summary(lambda _: state)[2:] == ["cards: yellow cyan3"]
+    event = game_event_t(card=game_event_t.YELLOW, robot="cyan3", team=game_state_t.TEAM_CYAN, half=1)
+    assert summary_of(state(), event)[2:] == ["cards: yellow cyan3"]

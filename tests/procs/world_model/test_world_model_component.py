@@ -34,8 +34,9 @@ def test_opponents_contain_neither_mates_nor_oneself() -> None:
         mates = [other for other in four.robots if other is not robot]
         world = robot.world
         assert [mate.name for mate in world.mates] == [mate.name for mate in mates]
-        assert world.mate_roles == [mate.role for mate in mates]
-        told_passes = [(said.receiver, said.x_m, said.y_m) for said in world.mate_agreements]
+        assert [mate.role for mate in world.mates] == [mate.role for mate in mates]
+        said = [mate.agreement for mate in world.mates]
+        told_passes = [(each.receiver, each.x_m, each.y_m) for each in said]
         assert told_passes == [(f"for {mate.name}", 1.5, -2.0) for mate in mates]
         for told, mate in zip(world.mates, mates, strict=True):
             assert (told.x_m, told.y_m) == pytest.approx(mate.pose[:2].tolist(), abs=0.08)

@@ -1,0 +1,22 @@
+"""The world model that knows the truth."""
+
+from fwk.testing import Bench
+from lcmtypes.soccer import true_robot_t
+from procs.behaviour.roles import ABSENT
+from procs.scenarios.perfect_world import PerfectWorldModel
+
+
+def test_mates_have_the_roles_that_they_announce() -> None:
+    bench = Bench(PerfectWorldModel, "cyan1/world_model", namespaces=("cyan3",))
+    names = ("cyan1", "magenta1", "cyan2", "cyan3")
+    robots = [true_robot_t(name=name, team=name[:-1], number=int(name[-1]), x_m=1.0 * place, vy_m_s=0.5)
+              for place, name in enumerate(names)]  # fmt: skip
+    bench.port("ground_truth").put(robots=robots)
+    bench.port("role", "cyan3").put(role="passer")
+    bench.iterate()
+    model = bench.port("world_model").sent[-1]
+    assert [(each.name, each.x_m, each.role) for each in model.mates] == [
+        ("cyan2", 2.0, ABSENT),
+        ("cyan3", 3.0, "passer"),
+    ]
+    assert [(each.x_m, each.vy_m_s) for each in model.opponents] == [(1.0, 0.5)]

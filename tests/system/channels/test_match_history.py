@@ -1,0 +1,44 @@
+"""The history of the match, which is written seldom, reaches a reader that is restarted."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording
+from tests.harness.runs import PortBlock, write_files
+from tests.programs.control_system import Steered
+
+pytestmark = pytest.mark.system
+
+FIELD = Path(__file__).parents[3] / "launch" / "msl-field.yaml"
+FILES = {
+    "match.yaml": f"include: {FIELD}\nname: match\ncomponents: {{world/reader: {{use: 'reader:Reader'}}}}\n",
+    "reader.py": """
+from fwk import Component, Reads, Writes
+from lcmtypes.soccer import match_history_t
+
+
+class Reader(Component):
+    stage = "think"
+    match_history: Reads[match_history_t]
+    seen: Writes[match_history_t]
+
+    def loop(self) -> None:
+        self.seen.value.events = self.match_history.value.events
+        self.seen.write()
+""",
+}
+
+
+def test_restarted_reader_has_the_history_of_the_match(launch: Launch, ports: PortBlock, tmp_path: Path) -> None:
+    write_files(tmp_path, FILES)
+    run = Steered(launch("match.yaml", "--speed", "1"), ports)
+    run.fwk("call", "world/referee_command", "name=goal", "team=cyan")
+    run.ticks_pass()
+    run.fwk("restart", "world/reader")
+    run.ticks_pass()
+    recording = Recording(run.end())
+    seen = [each for each in recording.decoded("world/seen") if each.header.writer == "world/reader#2"]
+    assert {tuple(event.goal for event in each.events) for each in seen} == {(False, True, False)}
+    assert [each.n for each in recording.decoded("world/match_history")] == [1, 3]
