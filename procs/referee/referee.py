@@ -23,6 +23,7 @@ from procs.simulation.physics.events import Event, Kind
 
 _KINDS = frozenset(Kind)
 _LEAVES = frozenset({Kind.GOAL, Kind.OUT_SIDE, Kind.OUT_END})  # events of the ball, with or without a robot
+_REPEATED_TICKS = 100  # from one message with the history to the next, for readers outside that come late
 
 
 class RefereeConfig(Config, Rules):
@@ -141,7 +142,7 @@ class Referee(Component):
         self.game_state.write()
 
     def _write_history(self) -> None:
-        if self._has_grown:
+        if self._has_grown or self.clock.tick % _REPEATED_TICKS == 1:
             self._has_grown = False
             self.match_history.write()
 

@@ -178,6 +178,8 @@ def test_history_is_written_at_first_and_when_it_grows() -> None:
     bench.iterate(5)
     assert len(bench.port("match_history").sent) == 2
     assert [each.goal for each in history(bench)] == [False, True, False]
+    bench.iterate(100)
+    assert len(bench.port("match_history").sent) == 3, "repeated for readers outside that come late"
 
 
 def test_history_that_begins_anew_is_written() -> None:
