@@ -6,7 +6,7 @@ from fwk import Clock, Component, Config, Logger, Reads, Writes
 from lcmtypes.robot import motor_command_t, odometry_t, wheel_command_t, wheel_state_t
 from procs.drivers.odometry import Odometry
 from procs.drivers.ramp import Ramp, within_wheel_limit
-from procs.model.kinematics import STANDSTILL, Velocity, velocity_of, wheels_of
+from procs.model.kinematics import STANDSTILL, Velocity, as_wheels, velocity_of, wheels_of
 from procs.model.robot import ROBOT, RobotModel
 from procs.model.units import US_PER_S
 
@@ -49,6 +49,7 @@ class Base(Component):
     def init(self) -> None:
         self._odometry = Odometry()
         self._measured_us = 0
+        self._told_wheels = -1  # wrong number of wheels that the log has named
         self._late = False
         self._ramp = self._limited(STANDSTILL)
 
@@ -67,6 +68,7 @@ class Base(Component):
     def finalize(self) -> None:
         """Leaves the wheels stopped."""
         self.wheel_command.value = wheel_command_t()
+        self.wheel_command.value.wheel_m_s = list(wheels_of(STANDSTILL, self.config.robot.wheel_distance_m))
         self.wheel_command.write()
 
     def _limited(self, velocity: Velocity) -> Ramp:
@@ -83,7 +85,14 @@ class Base(Component):
         return ramp
 
     def _add(self, state: wheel_state_t) -> None:
-        first, second, third = state.measured_m_s
+        try:
+            first, second, third = as_wheels(state.measured_m_s)
+        except ValueError as error:
+            if len(state.measured_m_s) != self._told_wheels:  # once, not in every tick
+                self._told_wheels = len(state.measured_m_s)
+                writer = state.header.writer or "an unknown writer"
+                self.log.error(f"wheel_state of {writer} {error}; ignored")
+            return
         if not all(abs(speed) <= _PLAUSIBLE * self.config.robot.wheel_limit_m_s for speed in state.measured_m_s):
             self.log.warning(f"wheel speeds {first}, {second}, {third} m/s are impossible; ignored")
             return

@@ -4,9 +4,13 @@ Robot frame: x forward, y left, angles counter-clockwise. A positive rim speed t
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 SIN_60 = math.sqrt(3) / 2
+
+WHEEL_ANGLES_DEG = (60, 180, 300)
+"""Direction from the robot's middle to each wheel, from forward."""
 
 Wheels = tuple[float, float, float]
 """One value for each wheel, in the order of the angles."""
@@ -21,6 +25,22 @@ class Velocity(NamedTuple):
 
 
 STANDSTILL = Velocity(0.0, 0.0, 0.0)
+
+
+def as_wheels(values: Sequence[float]) -> Wheels:
+    """Returns the values of a message, one for each wheel.
+
+    Raises:
+        ValueError: there are more or fewer values than wheels.
+    """
+    if len(values) != len(WHEEL_ANGLES_DEG):
+        angles = ", ".join(map(str, WHEEL_ANGLES_DEG))
+        raise ValueError(
+            f"has {len(values)} wheel speeds; this robot has {len(WHEEL_ANGLES_DEG)} wheels, at {angles} degrees from "
+            f"forward, and needs one speed for each, in this order"
+        )
+    first, second, third = values
+    return first, second, third
 
 
 def wheels_of(velocity: Velocity, wheel_distance_m: float) -> Wheels:

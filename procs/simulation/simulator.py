@@ -21,6 +21,7 @@ from lcmtypes.soccer import (
 )
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
+from procs.model.kinematics import Wheels, as_wheels
 from procs.model.realism import Realism
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.units import US_PER_S
@@ -33,6 +34,7 @@ from procs.simulation.physics.settings import PhysicsSettings
 from procs.simulation.physics.start_places import Pose
 from procs.simulation.physics.world import World
 
+_STOPPED: Wheels = (0.0, 0.0, 0.0)
 _FIELD_TICKS = 100  # from one message with the measures of the field to the next, for readers that come late
 
 
@@ -122,6 +124,7 @@ class Simulator(Component):
         self._period_us = round(config.period_s * US_PER_S) or self.clock.period_us
         self._before_us = -1
         self._placement_id = 0
+        self._told_wheels: dict[str, int] = {}  # robot to the wrong number of wheels that the log has named
         self._spoil_wheels()
 
     def config_changed(self) -> None:
@@ -170,9 +173,8 @@ class Simulator(Component):
     def _command_robots(self) -> None:
         world = self._world
         for robot, reader in self.wheel_command.items():
-            fresh = self._is_fresh(reader)
-            first, second, third = reader.value.wheel_m_s if fresh else (0.0, 0.0, 0.0)
-            world.robots[robot].drive.command((first, second, third), world.time_us)
+            wheels_m_s = self._wanted_m_s(robot, reader) if self._is_fresh(reader) else _STOPPED
+            world.robots[robot].drive.command(wheels_m_s, world.time_us)
         for robot in world.kickers:
             if robot not in self.kicker_drive:
                 continue
@@ -180,6 +182,19 @@ class Simulator(Component):
             wishes = [_command(drive) for drive in drives.fresh]
             for wish in wishes if self._is_fresh(drives) else [KickerCommand(0, 0.0, dribble=False)]:
                 world.kickers[robot].command(wish, world.time_us)
+
+    def _wanted_m_s(self, robot: str, reader: Reads[wheel_command_t]) -> Wheels:
+        """Returns the rim speeds of a command; one for another number of wheels stops the robot."""
+        wanted_m_s = reader.value.wheel_m_s
+        try:
+            wheels_m_s = as_wheels(wanted_m_s)
+        except ValueError as error:
+            if self._told_wheels.get(robot) != len(wanted_m_s):  # once, not in every tick
+                self._told_wheels[robot] = len(wanted_m_s)
+                writer = reader.header.writer or "an unknown writer"
+                self.log.error(f"{robot}/wheel_command of {writer} {error}; {robot} stops")
+            return _STOPPED
+        return wheels_m_s
 
     def _is_fresh(self, reader: Reads[wheel_command_t] | Reads[kicker_drive_t]) -> bool:
         age_s = self.clock.since_s(reader.header.time_us)
@@ -191,7 +206,7 @@ class Simulator(Component):
         for name, robot in self._world.robots.items():
             body = robot.body
             moves = not self._crew.frozen
-            wheels_m_s = self._encoders[name].read(robot.drive.measured_m_s() if moves else (0.0, 0.0, 0.0), passed_s)
+            wheels_m_s = self._encoders[name].read(robot.drive.measured_m_s() if moves else _STOPPED, passed_s)
             turning_rad_s = body.angular_velocity if moves else 0.0
             inertial = self._imus[name].read(body.angle, turning_rad_s, body.velocity, passed_s)
             if name in self.wheel_state:

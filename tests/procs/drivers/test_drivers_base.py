@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from fwk.testing import Bench
+from lcmtypes.core import log_t
 from lcmtypes.robot import motor_command_t, wheel_state_t
 from procs.drivers.base import Base
 from procs.model.kinematics import Velocity, velocity_of, wheels_of
@@ -117,6 +118,32 @@ def test_impossible_wheel_speeds_are_refused_with_a_warning(speed_m_s: float) ->
     roll(base, Velocity(1.0, 0.0, 0.0), 1)
     assert base.port("odometry").sent[-1].x_m == pytest.approx(0.05)
     assert base.logged[0].text == f"wheel speeds 0.0, {speed_m_s}, 0.0 m/s are impossible; ignored"
+
+
+@pytest.mark.parametrize("measured_m_s", [[], [0.1, 0.2], [0.1, 0.2, 0.3, 0.4]])
+def test_wrong_number_of_wheels_is_an_error_told_once(measured_m_s: list[float]) -> None:
+    base = bench()
+    for _ in range(3):
+        base.port("wheel_state").put(measured_m_s=measured_m_s)
+        base.iterate(stage="sensor_acquire")
+    assert base.port("odometry").sent[-1].x_m == 0.0
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    assert base.port("odometry").sent[-1].vx_m_s == pytest.approx(1.0)
+    assert [(line.level, line.text) for line in base.logged] == [
+        (
+            log_t.ERROR,
+            f"wheel_state of an unknown writer has {len(measured_m_s)} wheel speeds; this robot has 3 wheels, at 60, "
+            "180, 300 degrees from forward, and needs one speed for each, in this order; ignored",
+        )
+    ]
+
+
+def test_each_wrong_number_of_wheels_is_told() -> None:
+    base = bench()
+    for number in (2, 4, 4):
+        base.port("wheel_state").put(measured_m_s=[0.0] * number)
+        base.iterate(stage="sensor_acquire")
+    assert [line.text.partition(";")[0][-14:] for line in base.logged] == ["2 wheel speeds", "4 wheel speeds"]
 
 
 def test_after_a_long_silence_only_the_last_period_counts() -> None:

@@ -122,6 +122,18 @@ def test_wheels_turn_and_are_measured() -> None:
     assert world.port("wheel_state", "cyan1").sent[-1].measured_m_s == pytest.approx([-0.866, 0.0, 0.866], abs=1e-3)
 
 
+@pytest.mark.parametrize("wheel_m_s", [[], [1.0], [1.0, 1.0, 1.0, 1.0]])
+def test_command_for_another_number_of_wheels_stops(wheel_m_s: list[float]) -> None:
+    world = bench()
+    tick(world, 20, cyan1=[-0.866, 0.0, 0.866])
+    assert tick(world, 20, cyan1=wheel_m_s).robots[0].vx_m_s == pytest.approx(0.0, abs=1e-3)
+    assert [line.text for line in world.logged] == [
+        f"cyan1/wheel_command of an unknown writer has {len(wheel_m_s)} wheel speeds; this robot has 3 wheels, at 60, "
+        "180, 300 degrees from forward, and needs one speed for each, in this order; cyan1 stops"
+    ]
+    assert tick(world, 20, cyan1=[-0.866, 0.0, 0.866]).robots[0].vx_m_s == pytest.approx(1.0, abs=0.01)
+
+
 def test_robot_that_receives_nothing_stops() -> None:
     world = bench()
     tick(world, 20, cyan1=[-0.866, 0.0, 0.866])
