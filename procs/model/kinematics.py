@@ -58,3 +58,16 @@ def velocity_of(wheels: Wheels, wheel_distance_m: float) -> Velocity:
         (0.5 * (first + third) - second) / 1.5,
         (first + second + third) / (3 * wheel_distance_m),
     )
+
+
+def velocity_covariance_of(variances_m2_s2: Wheels, wheel_distance_m: float) -> list[list[float]]:
+    """Returns the covariance (3, 3) of `velocity_of` for wheels whose rim speeds have independent errors."""
+    first, second, third = variances_m2_s2
+    ahead_aside = (third - first) * SIN_60 / 4.5
+    ahead_turn = (third - first) * SIN_60 / (4.5 * wheel_distance_m)
+    aside_turn = (0.5 * (first + third) - second) / (4.5 * wheel_distance_m)
+    return [
+        [(first + third) / 3, ahead_aside, ahead_turn],
+        [ahead_aside, (0.25 * (first + third) + second) / 2.25, aside_turn],
+        [ahead_turn, aside_turn, (first + second + third) / (3 * wheel_distance_m) ** 2],
+    ]

@@ -215,7 +215,8 @@ class Simulator(Component):
                 self.wheel_state[name].write()
             if name in self.imu:
                 imu = self.imu[name].value
-                imu.heading_rad, imu.yaw_rate_rad_s, imu.ax_m_s2, imu.ay_m_s2 = inertial
+                imu.heading_rad, imu.yaw_rate_rad_s, imu.ax_m_s2, imu.ay_m_s2, *deviations = inertial
+                imu.heading_sd_rad, imu.yaw_rate_sd_rad_s, imu.acceleration_sd_m_s2 = deviations
                 imu.capture_us = now_us
                 self.imu[name].write()
             if name in self.kicker_sensor:

@@ -27,6 +27,7 @@ from lcmtypes.soccer import ball_placement_t, game_state_t, ground_truth_t, matc
 from procs.drivers.base import Base
 from procs.drivers.kicker import Kicker
 from procs.referee.referee import Referee
+from procs.simulation.physics.realism import noise_of
 from procs.simulation.simulator import Simulator, SimulatorConfig
 
 ROBOTS = ("cyan1", "cyan2", "magenta1")
@@ -205,6 +206,28 @@ def test_impossible_placement_is_refused_with_a_warning() -> None:
     world.port("ball_placement").put(placement_id=1, x_m=math.nan, y_m=0.0)
     assert tick(world).ball_x_m == 0.0
     assert [line.text for line in world.logged] == ["ball placement 1 asks for (nan, 0.0); ignored"]
+
+
+def test_compass_and_gyro_tell_their_deviations() -> None:
+    for settings, period_s in (
+        ({"realism": "none"}, 0.05),
+        ({"realism": "realistic"}, 0.05),
+        ({"realism": "harsh"}, 0.02),
+    ):
+        world, noise = bench(**settings, period_s=period_s), noise_of(settings["realism"], {})
+        tick(world)
+        imu = world.port("imu", "cyan1").sent[-1]
+        assert imu.heading_sd_rad == pytest.approx(noise.compass_noise_sqrt_s / math.sqrt(period_s))
+        assert imu.yaw_rate_sd_rad_s == pytest.approx(noise.gyro_noise_sqrt_s / math.sqrt(period_s))
+        assert imu.acceleration_sd_m_s2 == 0.0, "the simulated accelerometer has no error"
+
+
+def test_deviations_cover_the_noise_of_compass_and_gyro() -> None:
+    world = bench(realism="realistic", errors={"compass_drift_sd_rad": 0.0, "gyro_bias_sd_rad_s": 0.0})
+    tick(world, 400)
+    sent = world.port("imu", "cyan2").sent
+    assert np.std([imu.heading_rad for imu in sent]) == pytest.approx(sent[-1].heading_sd_rad, rel=0.1)
+    assert np.std([imu.yaw_rate_rad_s for imu in sent]) == pytest.approx(sent[-1].yaw_rate_sd_rad_s, rel=0.1)
 
 
 def test_realism_makes_odometry_drift_from_the_truth() -> None:
