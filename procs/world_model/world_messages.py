@@ -1,10 +1,20 @@
 """Fills the messages of the world model."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from lcmtypes.soccer import ball_estimate_t, obstacle_t, robot_estimate_t, team_message_t, world_model_t
+from lcmtypes.robot import battery_state_t
+from lcmtypes.soccer import (
+    ball_estimate_t,
+    drive_target_t,
+    obstacle_t,
+    robot_estimate_t,
+    team_message_t,
+    world_model_t,
+)
+from procs.model.geometry import plausible
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.own_view import OwnView
 from procs.world_model.robot_tracks import RobotTracks
@@ -52,6 +62,34 @@ def fill_team_message(message: team_message_t, view: OwnView, ball: Seen, obstac
         obstacle.covariance_m2 = covariance_m2.tolist()
         obstacle.radius_m = float(radius_m)
         message.obstacles.append(obstacle)
+
+
+def fill_plan(message: team_message_t, target: drive_target_t | None, battery: battery_state_t | None) -> None:
+    """Fills in where the robot is driving to, and the charge of its battery.
+
+    Args:
+        message: to the team.
+        target: of the skiller; None if there is no present one.
+        battery: newest state; None if it is not known.
+    """
+    place = (0.0, 0.0, 0.0)
+    message.has_target = False
+    if target is not None and not target.stop and plausible(target.x_m, target.y_m, target.heading_rad):
+        message.has_target, place = True, (target.x_m, target.y_m, target.heading_rad)
+    message.target_x_m, message.target_y_m, message.target_heading_rad = place
+    message.battery_charge = math.nan if battery is None else _share(battery.charge, math.nan)
+
+
+def fill_ball(message: team_message_t, belief: ball_estimate_t, confidence: float) -> None:
+    """Fills in what the robot believes about the ball's velocity, and the confidence of its own sighting."""
+    message.ball_known = belief.known
+    message.ball_vx_m_s, message.ball_vy_m_s = (belief.vx_m_s, belief.vy_m_s) if belief.known else (0.0, 0.0)
+    message.ball_confidence = _share(confidence, 0.0) if message.ball_visible else 0.0
+
+
+def _share(value: float, otherwise: float) -> float:
+    """Returns a value from 0 to 1; `otherwise` for one that is none, such as NaN."""
+    return value if 0.0 <= value <= 1.0 else otherwise
 
 
 def _ball(ball: BallTracker) -> ball_estimate_t:
