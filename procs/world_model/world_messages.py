@@ -1,6 +1,5 @@
 """Fills the messages of the world model."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -77,19 +76,20 @@ def fill_plan(message: team_message_t, target: drive_target_t | None, battery: b
     if target is not None and not target.stop and plausible(target.x_m, target.y_m, target.heading_rad):
         message.has_target, place = True, (target.x_m, target.y_m, target.heading_rad)
     message.target_x_m, message.target_y_m, message.target_heading_rad = place
-    message.battery_charge = math.nan if battery is None else _share(battery.charge, math.nan)
+    message.battery_known = battery is not None and _is_share(battery.charge)
+    message.battery_charge = battery.charge if battery is not None and message.battery_known else 0.0
 
 
 def fill_ball(message: team_message_t, belief: ball_estimate_t, confidence: float) -> None:
     """Fills in what the robot believes about the ball's velocity, and the confidence of its own sighting."""
     message.ball_known = belief.known
     message.ball_vx_m_s, message.ball_vy_m_s = (belief.vx_m_s, belief.vy_m_s) if belief.known else (0.0, 0.0)
-    message.ball_confidence = _share(confidence, 0.0) if message.ball_visible else 0.0
+    message.ball_confidence = confidence if message.ball_visible and _is_share(confidence) else 0.0
 
 
-def _share(value: float, otherwise: float) -> float:
-    """Returns a value from 0 to 1; `otherwise` for one that is none, such as NaN."""
-    return value if 0.0 <= value <= 1.0 else otherwise
+def _is_share(value: float) -> bool:
+    """Returns whether a value is from 0 to 1; NaN is not."""
+    return 0.0 <= value <= 1.0
 
 
 def _ball(ball: BallTracker) -> ball_estimate_t:

@@ -151,7 +151,7 @@ def test_each_wrong_number_of_wheels_is_told() -> None:
 
 def test_covariance_is_that_of_the_wheels_by_their_geometry() -> None:
     base = bench(wheel_scale_sd=0.03, wheel_noise_sqrt_s=0.01, wheel_resolution_m_s=0.002)
-    assert base.iterate(stage="sensor_acquire") is None
+    base.iterate(stage="sensor_acquire")
     assert not np.any(base.port("odometry").sent[-1].velocity_covariance), (
         "nothing is known before the first measurement"
     )

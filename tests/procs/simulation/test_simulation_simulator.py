@@ -26,6 +26,7 @@ from lcmtypes.robot import (
 from lcmtypes.soccer import ball_placement_t, game_state_t, ground_truth_t, match_event_t, match_events_t
 from procs.drivers.base import Base
 from procs.drivers.kicker import Kicker
+from procs.model.realism import Realism
 from procs.referee.referee import Referee
 from procs.simulation.physics.realism import noise_of
 from procs.simulation.simulator import Simulator, SimulatorConfig
@@ -208,18 +209,14 @@ def test_impossible_placement_is_refused_with_a_warning() -> None:
     assert [line.text for line in world.logged] == ["ball placement 1 asks for (nan, 0.0); ignored"]
 
 
-def test_compass_and_gyro_tell_their_deviations() -> None:
-    for settings, period_s in (
-        ({"realism": "none"}, 0.05),
-        ({"realism": "realistic"}, 0.05),
-        ({"realism": "harsh"}, 0.02),
-    ):
-        world, noise = bench(**settings, period_s=period_s), noise_of(settings["realism"], {})
-        tick(world)
-        imu = world.port("imu", "cyan1").sent[-1]
-        assert imu.heading_sd_rad == pytest.approx(noise.compass_noise_sqrt_s / math.sqrt(period_s))
-        assert imu.yaw_rate_sd_rad_s == pytest.approx(noise.gyro_noise_sqrt_s / math.sqrt(period_s))
-        assert imu.acceleration_sd_m_s2 == 0.0, "the simulated accelerometer has no error"
+@pytest.mark.parametrize(("realism", "period_s"), [("none", 0.05), ("realistic", 0.05), ("harsh", 0.02)])
+def test_compass_and_gyro_tell_their_deviations(realism: Realism, period_s: float) -> None:
+    world, noise = bench(realism=realism, period_s=period_s), noise_of(realism, {})
+    tick(world)
+    imu = world.port("imu", "cyan1").sent[-1]
+    assert imu.heading_sd_rad == pytest.approx(noise.compass_noise_sqrt_s / math.sqrt(period_s))
+    assert imu.yaw_rate_sd_rad_s == pytest.approx(noise.gyro_noise_sqrt_s / math.sqrt(period_s))
+    assert imu.acceleration_sd_m_s2 == 0.0, "the simulated accelerometer has no error"
 
 
 def test_deviations_cover_the_noise_of_compass_and_gyro() -> None:

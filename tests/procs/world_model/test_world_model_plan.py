@@ -32,6 +32,10 @@ def target_of(message: team_message_t) -> tuple[bool, float, float, float]:
     return bool(message.has_target), message.target_x_m, message.target_y_m, message.target_heading_rad
 
 
+def charge_of(message: team_message_t) -> tuple[bool, float]:
+    return bool(message.battery_known), message.battery_charge
+
+
 def test_team_hears_where_the_robot_drives_to() -> None:
     message = told(robot(x_m=3.0, y_m=-1.0, heading_rad=0.5))
     assert target_of(message) == (True, 3.0, -1.0, 0.5)
@@ -51,18 +55,18 @@ def test_target_of_a_skiller_that_fell_silent_is_dropped() -> None:
 
 def test_team_hears_the_newest_charge() -> None:
     made = robot()
-    assert math.isnan(told(made).battery_charge), "no battery has told its state"
+    assert charge_of(told(made)) == (False, 0.0), "no battery has told its state"
     for charge in (0.75, 0.5):
         made.bench.port("battery_state").put(charge=charge, voltage_v=25.0)
-        assert told(made).battery_charge == charge
-    assert told(made).battery_charge == 0.5, "the state of a second ago is still the newest"
+        assert charge_of(told(made)) == (True, charge)
+    assert charge_of(told(made)) == (True, 0.5), "the state of a second ago is still the newest"
 
 
 @pytest.mark.parametrize("charge", [math.nan, math.inf, -0.1, 1.1])
 def test_charge_that_cannot_be_is_not_known(charge: float) -> None:
     message = team_message_t()
     fill_plan(message, drive_target_t(), battery_state_t(charge=charge))
-    assert math.isnan(message.battery_charge)
+    assert charge_of(message) == (False, 0.0)
 
 
 def test_team_hears_the_believed_velocity_of_the_ball() -> None:
