@@ -1,17 +1,30 @@
 """Driver of the wheels: converts velocities into rim speeds, and measured speeds into odometry."""
 
+from typing import Annotated
+
+from pydantic import Field as Setting
 from pydantic import PositiveFloat
 
 from fwk import Clock, Component, Config, Logger, Reads, Writes
 from lcmtypes.robot import motor_command_t, odometry_t, wheel_command_t, wheel_state_t
 from procs.drivers.odometry import Odometry
 from procs.drivers.ramp import Ramp, within_wheel_limit
-from procs.model.kinematics import STANDSTILL, Velocity, velocity_of, wheels_of
+from procs.model.kinematics import (
+    STANDSTILL,
+    Velocity,
+    Wheels,
+    as_wheels,
+    velocity_covariance_of,
+    velocity_of,
+    wheels_of,
+)
 from procs.model.robot import ROBOT, RobotModel
 from procs.model.units import US_PER_S
 
 _PLAUSIBLE = 2.0  # wheels cannot turn faster than their limit times this, even when they are pushed
 _LONGEST_GAP_S = 0.5  # a measurement after a longer silence does not cover the time before
+
+_Deviation = Annotated[float, Setting(ge=0.0, le=1.0)]
 
 
 class BaseConfig(Config):
@@ -31,6 +44,14 @@ class BaseConfig(Config):
     """Limit of its change."""
     command_timeout_s: PositiveFloat = 0.25
     """The robot brakes to a standstill when its newest motor command is older."""
+    wheel_scale_sd: _Deviation = 0.03
+    """Relative error of each wheel's speed that stays the same for long, as that of a worn wheel. Default: as in the
+    simulation's preset `realistic`."""
+    wheel_noise_sqrt_s: _Deviation = 0.0112
+    """Relative error of the way that a wheel measures in one second; in a tick it is larger by the square root of the
+    ticks in a second. Default: as in the simulation's preset `realistic`."""
+    wheel_resolution_m_s: _Deviation = 0.001
+    """Error in m/s of a wheel that hardly turns: the step from one value of the encoder to the next; an estimate."""
 
 
 class Base(Component):
@@ -49,6 +70,7 @@ class Base(Component):
     def init(self) -> None:
         self._odometry = Odometry()
         self._measured_us = 0
+        self._told_wheels = -1  # wrong number of wheels that the log has named
         self._late = False
         self._ramp = self._limited(STANDSTILL)
 
@@ -67,6 +89,7 @@ class Base(Component):
     def finalize(self) -> None:
         """Leaves the wheels stopped."""
         self.wheel_command.value = wheel_command_t()
+        self.wheel_command.value.wheel_m_s = list(wheels_of(STANDSTILL, self.config.robot.wheel_distance_m))
         self.wheel_command.write()
 
     def _limited(self, velocity: Velocity) -> Ramp:
@@ -83,7 +106,14 @@ class Base(Component):
         return ramp
 
     def _add(self, state: wheel_state_t) -> None:
-        first, second, third = state.measured_m_s
+        try:
+            first, second, third = as_wheels(state.measured_m_s)
+        except ValueError as error:
+            if len(state.measured_m_s) != self._told_wheels:  # once, not in every tick
+                self._told_wheels = len(state.measured_m_s)
+                writer = state.header.writer or "an unknown writer"
+                self.log.error(f"wheel_state of {writer} {error}; ignored")
+            return
         if not all(abs(speed) <= _PLAUSIBLE * self.config.robot.wheel_limit_m_s for speed in state.measured_m_s):
             self.log.warning(f"wheel speeds {first}, {second}, {third} m/s are impossible; ignored")
             return
@@ -93,6 +123,20 @@ class Base(Component):
         if not 0 < passed_s <= _LONGEST_GAP_S:
             passed_s = self.clock.period_s
         self._odometry.advance(velocity_of((first, second, third), self.config.robot.wheel_distance_m), passed_s)
+        self.odometry.value.velocity_covariance = self._covariance((first, second, third))
+
+    def _covariance(self, wheels_m_s: Wheels) -> list[list[float]]:
+        """Returns the covariance (3, 3) of the velocity by the errors of its wheels, which each measured for a tick."""
+        config = self.config
+        relative = config.wheel_scale_sd**2 + config.wheel_noise_sqrt_s**2 / self.clock.period_s
+        standing_m2_s2 = config.wheel_resolution_m_s**2
+        first, second, third = wheels_m_s
+        variances_m2_s2 = (
+            relative * first * first + standing_m2_s2,
+            relative * second * second + standing_m2_s2,
+            relative * third * third + standing_m2_s2,
+        )
+        return velocity_covariance_of(variances_m2_s2, config.robot.wheel_distance_m)
 
     def _report(self) -> None:
         report, odometry = self.odometry.value, self._odometry

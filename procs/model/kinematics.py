@@ -4,9 +4,13 @@ Robot frame: x forward, y left, angles counter-clockwise. A positive rim speed t
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 SIN_60 = math.sqrt(3) / 2
+
+WHEEL_ANGLES_DEG = (60, 180, 300)
+"""Direction from the robot's middle to each wheel, from forward."""
 
 Wheels = tuple[float, float, float]
 """One value for each wheel, in the order of the angles."""
@@ -21,6 +25,22 @@ class Velocity(NamedTuple):
 
 
 STANDSTILL = Velocity(0.0, 0.0, 0.0)
+
+
+def as_wheels(values: Sequence[float]) -> Wheels:
+    """Returns the values of a message, one for each wheel.
+
+    Raises:
+        ValueError: there are more or fewer values than wheels.
+    """
+    if len(values) != len(WHEEL_ANGLES_DEG):
+        angles = ", ".join(map(str, WHEEL_ANGLES_DEG))
+        raise ValueError(
+            f"has {len(values)} wheel speeds; this robot has {len(WHEEL_ANGLES_DEG)} wheels, at {angles} degrees from "
+            f"forward, and needs one speed for each, in this order"
+        )
+    first, second, third = values
+    return first, second, third
 
 
 def wheels_of(velocity: Velocity, wheel_distance_m: float) -> Wheels:
@@ -38,3 +58,16 @@ def velocity_of(wheels: Wheels, wheel_distance_m: float) -> Velocity:
         (0.5 * (first + third) - second) / 1.5,
         (first + second + third) / (3 * wheel_distance_m),
     )
+
+
+def velocity_covariance_of(variances_m2_s2: Wheels, wheel_distance_m: float) -> list[list[float]]:
+    """Returns the covariance (3, 3) of `velocity_of` for wheels whose rim speeds have independent errors."""
+    first, second, third = variances_m2_s2
+    ahead_aside = (third - first) * SIN_60 / 4.5
+    ahead_turn = (third - first) * SIN_60 / (4.5 * wheel_distance_m)
+    aside_turn = (0.5 * (first + third) - second) / (4.5 * wheel_distance_m)
+    return [
+        [(first + third) / 3, ahead_aside, ahead_turn],
+        [ahead_aside, (0.25 * (first + third) + second) / 2.25, aside_turn],
+        [ahead_turn, aside_turn, (first + second + third) / (3 * wheel_distance_m) ** 2],
+    ]

@@ -8,7 +8,7 @@ from pydantic import Field as Setting
 from pydantic import PositiveFloat
 
 from fwk import Clock, Component, Config, Each, Logger, Reads, Serves, TimeSource, Writes, channel
-from lcmtypes.robot import imu_t, kicker_drive_t, kicker_sensor_t, wheel_command_t, wheel_state_t
+from lcmtypes.robot import battery_state_t, imu_t, kicker_drive_t, kicker_sensor_t, wheel_command_t, wheel_state_t
 from lcmtypes.soccer import (
     ball_placement_t,
     field_t,
@@ -21,6 +21,7 @@ from lcmtypes.soccer import (
 )
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
+from procs.model.kinematics import Wheels, as_wheels
 from procs.model.realism import Realism
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.units import US_PER_S
@@ -33,6 +34,8 @@ from procs.simulation.physics.settings import PhysicsSettings
 from procs.simulation.physics.start_places import Pose
 from procs.simulation.physics.world import World
 
+_STOPPED: Wheels = (0.0, 0.0, 0.0)
+_BATTERY_US = US_PER_S  # from one message about the batteries to the next
 _FIELD_TICKS = 100  # from one message with the measures of the field to the next, for readers that come late
 
 
@@ -81,6 +84,7 @@ class Simulator(Component):
     wheel_state: Each[Writes[wheel_state_t]] = channel("*/wheel_state")
     kicker_sensor: Each[Writes[kicker_sensor_t]] = channel("*/kicker_sensor")
     imu: Each[Writes[imu_t]] = channel("*/imu")
+    battery_state: Each[Writes[battery_state_t]] = channel("*/battery_state")
     config: SimulatorConfig
     clock: Clock
     time_source: TimeSource
@@ -121,7 +125,10 @@ class Simulator(Component):
         self._imus = {robot: Imu(noise, self.rng) for robot in robots}
         self._period_us = round(config.period_s * US_PER_S) or self.clock.period_us
         self._before_us = -1
+        self._battery_us = -_BATTERY_US  # the first message is due at once
+        self._empty: set[str] = set()  # robots whose motors stand because their batteries are empty
         self._placement_id = 0
+        self._told_wheels: dict[str, int] = {}  # robot to the wrong number of wheels that the log has named
         self._spoil_wheels()
 
     def config_changed(self) -> None:
@@ -137,6 +144,7 @@ class Simulator(Component):
         self._command_robots()
         events = [] if self._crew.frozen else self._world.advance(passed_us)
         self._sense(passed_us / US_PER_S)
+        self._check_batteries()
         self._report_truth()
         report = self.match_events.value
         report.ball_in_field = self._world.ball_in_field
@@ -170,16 +178,30 @@ class Simulator(Component):
     def _command_robots(self) -> None:
         world = self._world
         for robot, reader in self.wheel_command.items():
-            fresh = self._is_fresh(reader)
-            first, second, third = reader.value.wheel_m_s if fresh else (0.0, 0.0, 0.0)
-            world.robots[robot].drive.command((first, second, third), world.time_us)
+            obeys = robot not in self._empty and self._is_fresh(reader)
+            wheels_m_s = self._wanted_m_s(robot, reader) if obeys else _STOPPED
+            world.robots[robot].drive.command(wheels_m_s, world.time_us)
         for robot in world.kickers:
             if robot not in self.kicker_drive:
                 continue
             drives = self.kicker_drive[robot]
             wishes = [_command(drive) for drive in drives.fresh]
-            for wish in wishes if self._is_fresh(drives) else [KickerCommand(0, 0.0, dribble=False)]:
+            obeys = robot not in self._empty and self._is_fresh(drives)
+            for wish in wishes if obeys else [KickerCommand(0, 0.0, dribble=False)]:
                 world.kickers[robot].command(wish, world.time_us)
+
+    def _wanted_m_s(self, robot: str, reader: Reads[wheel_command_t]) -> Wheels:
+        """Returns the rim speeds of a command; one for another number of wheels stops the robot."""
+        wanted_m_s = reader.value.wheel_m_s
+        try:
+            wheels_m_s = as_wheels(wanted_m_s)
+        except ValueError as error:
+            if self._told_wheels.get(robot) != len(wanted_m_s):  # once, not in every tick
+                self._told_wheels[robot] = len(wanted_m_s)
+                writer = reader.header.writer or "an unknown writer"
+                self.log.error(f"{robot}/wheel_command of {writer} {error}; {robot} stops")
+            return _STOPPED
+        return wheels_m_s
 
     def _is_fresh(self, reader: Reads[wheel_command_t] | Reads[kicker_drive_t]) -> bool:
         age_s = self.clock.since_s(reader.header.time_us)
@@ -191,7 +213,7 @@ class Simulator(Component):
         for name, robot in self._world.robots.items():
             body = robot.body
             moves = not self._crew.frozen
-            wheels_m_s = self._encoders[name].read(robot.drive.measured_m_s() if moves else (0.0, 0.0, 0.0), passed_s)
+            wheels_m_s = self._encoders[name].read(robot.drive.measured_m_s() if moves else _STOPPED, passed_s)
             turning_rad_s = body.angular_velocity if moves else 0.0
             inertial = self._imus[name].read(body.angle, turning_rad_s, body.velocity, passed_s)
             if name in self.wheel_state:
@@ -200,7 +222,8 @@ class Simulator(Component):
                 self.wheel_state[name].write()
             if name in self.imu:
                 imu = self.imu[name].value
-                imu.heading_rad, imu.yaw_rate_rad_s, imu.ax_m_s2, imu.ay_m_s2 = inertial
+                imu.heading_rad, imu.yaw_rate_rad_s, imu.ax_m_s2, imu.ay_m_s2, *deviations = inertial
+                imu.heading_sd_rad, imu.yaw_rate_sd_rad_s, imu.acceleration_sd_m_s2 = deviations
                 imu.capture_us = now_us
                 self.imu[name].write()
             if name in self.kicker_sensor:
@@ -210,6 +233,20 @@ class Simulator(Component):
                 sensor.charge = kicker.charge(self._world.time_us)
                 sensor.kick_id, sensor.capture_us = kicker.kick_id, now_us
                 self.kicker_sensor[name].write()
+
+    def _check_batteries(self) -> None:
+        now_us, batteries = self.clock.now_us, self._world.batteries
+        empty = {name for name, battery in batteries.items() if battery.empty}
+        for name in sorted(empty - self._empty):
+            self.log.warning(f"the battery of {name} is empty: motors and kicker stop; world/reset puts a full one in")
+        self._empty = empty
+        if now_us - self._battery_us < _BATTERY_US:
+            return
+        self._battery_us = now_us
+        for name, writer in self.battery_state.items():
+            state, battery = writer.value, batteries[name]
+            state.charge, state.voltage_v, state.capture_us = battery.charge, battery.voltage_v, now_us
+            writer.write()
 
     def _report_truth(self) -> None:
         truth, ball, players = self.ground_truth.value, self._world.ball, self.config.players

@@ -4,14 +4,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from lcmtypes.robot import battery_state_t
 from lcmtypes.soccer import (
     ball_estimate_t,
+    drive_target_t,
     mate_estimate_t,
     obstacle_t,
     robot_estimate_t,
     team_message_t,
     world_model_t,
 )
+from procs.model.geometry import plausible
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.own_view import OwnView
 from procs.world_model.robot_tracks import RobotTracks
@@ -57,6 +60,35 @@ def fill_team_message(message: team_message_t, view: OwnView, ball: Seen, obstac
         obstacle.covariance_m2 = covariance_m2.tolist()
         obstacle.radius_m = float(radius_m)
         message.obstacles.append(obstacle)
+
+
+def fill_plan(message: team_message_t, target: drive_target_t | None, battery: battery_state_t | None) -> None:
+    """Fills in where the robot is driving to, and the charge of its battery.
+
+    Args:
+        message: to the team.
+        target: of the skiller; None if there is no present one.
+        battery: newest state; None if it is not known.
+    """
+    place = (0.0, 0.0, 0.0)
+    message.has_target = False
+    if target is not None and not target.stop and plausible(target.x_m, target.y_m, target.heading_rad):
+        message.has_target, place = True, (target.x_m, target.y_m, target.heading_rad)
+    message.target_x_m, message.target_y_m, message.target_heading_rad = place
+    message.battery_known = battery is not None and _is_share(battery.charge)
+    message.battery_charge = battery.charge if battery is not None and message.battery_known else 0.0
+
+
+def fill_ball(message: team_message_t, belief: ball_estimate_t, confidence: float) -> None:
+    """Fills in what the robot believes about the ball's velocity, and the confidence of its own sighting."""
+    message.ball_known = belief.known
+    message.ball_vx_m_s, message.ball_vy_m_s = (belief.vx_m_s, belief.vy_m_s) if belief.known else (0.0, 0.0)
+    message.ball_confidence = confidence if message.ball_visible and _is_share(confidence) else 0.0
+
+
+def _is_share(value: float) -> bool:
+    """Returns whether a value is from 0 to 1; NaN is not."""
+    return 0.0 <= value <= 1.0
 
 
 def _ball(ball: BallTracker) -> ball_estimate_t:

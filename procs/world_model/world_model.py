@@ -12,9 +12,10 @@ import numpy as np
 from pydantic import Field as Setting
 
 from fwk import Clock, Component, Config, Reads, Writes
-from lcmtypes.robot import kicker_state_t, odometry_t
+from lcmtypes.robot import battery_state_t, kicker_state_t, odometry_t
 from lcmtypes.soccer import (
     ball_percept_t,
+    drive_target_t,
     obstacle_percepts_t,
     pose_t,
     role_t,
@@ -37,7 +38,7 @@ from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
 from procs.world_model.team import Mate, PlaceRow, Places, Team
 from procs.world_model.told import ball_of, held_by, mate_of, mouth_of, obstacles_of
-from procs.world_model.world_messages import fill_team_message, fill_world_model
+from procs.world_model.world_messages import fill_ball, fill_plan, fill_team_message, fill_world_model
 
 _STALE_S = 0.5  # older sightings of mates are not used
 _HOLDER_S = 0.3  # a mate's word that it holds the ball is believed for so long
@@ -99,6 +100,8 @@ class WorldModel(Component):
     obstacle_percepts: Reads[obstacle_percepts_t]
     kicker_state: Reads[kicker_state_t]
     role: Reads[role_t]
+    drive_target: Reads[drive_target_t]
+    battery_state: Reads[battery_state_t]
     team_inbox: Reads[team_inbox_t]
     world_model: Writes[world_model_t]
     team_message: Writes[team_message_t]
@@ -316,6 +319,13 @@ class WorldModel(Component):
         message.role, message.intention, message.agreement = role.role, role.intention, role.agreement
         message.ball_held = self.kicker_state.value.ball_held
         fill_team_message(message, view, self._untold_ball, self._untold_obstacles)
+        fill_ball(message, self.world_model.value.ball, self.ball_percept.value.confidence)
+        drives = self.drive_target.has_value and self.clock.since_s(self.drive_target.header.time_us) <= _STALE_S
+        fill_plan(
+            message,
+            self.drive_target.value if drives else None,
+            self.battery_state.value if self.battery_state.has_value else None,
+        )
         self._untold_ball = self._untold_obstacles = Seen.NOTHING
         self._sent_us = self.clock.now_us
         self._kick_messages = max(0, self._kick_messages - 1)

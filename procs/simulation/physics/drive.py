@@ -29,6 +29,7 @@ class Drive:
         self._wanted_m_s: Wheels = (0.0, 0.0, 0.0)
         self._travelled_m: Wheels = (0.0, 0.0, 0.0)
         self._measured_s = 0.0
+        self._work_j = 0.0
         self._step_s, self._share = 0.0, 0.0  # duration of a step, and the share of its way that a motor comes in it
 
     def command(self, wheels_m_s: Wheels, now_us: int) -> None:
@@ -58,7 +59,10 @@ class Drive:
         self._measured_s += duration_s
 
     def push(self, vx_m_s: float, vy_m_s: float, omega_rad_s: float) -> tuple[float, float, float]:
-        """Returns force in N along x and y of the robot frame and torque in Nm; the velocity is the body's."""
+        """Returns force in N along x and y of the robot frame and torque in Nm; the velocity is the body's.
+
+        They act for the step of `turn_motors`, whose work is counted.
+        """
         distance_m, full_slip_m_s, grip_n = self._distance_m, self._full_slip_m_s, self._grip_n
         rim_1, rim_2, rim_3 = self.wheels_m_s
         # Speeds of the ground below the wheels as in `wheels_of`, whose call would cost a tenth of a step.
@@ -66,7 +70,15 @@ class Drive:
         first = grip_n * math.tanh((rim_1 - (side_m_s - ahead_m_s + turn_m_s)) / full_slip_m_s)
         second = grip_n * math.tanh((rim_2 - (turn_m_s - vy_m_s)) / full_slip_m_s)
         third = grip_n * math.tanh((rim_3 - (ahead_m_s + side_m_s + turn_m_s)) / full_slip_m_s)
+        power_w = first * rim_1 + second * rim_2 + third * rim_3
+        if power_w > 0.0:
+            self._work_j += power_w * self._step_s
         return SIN_60 * (third - first), 0.5 * (first + third) - second, distance_m * (first + second + third)
+
+    def take_work_j(self) -> float:
+        """Returns the work of the wheels at their rims since the last call; braking counts nothing."""
+        work_j, self._work_j = self._work_j, 0.0
+        return work_j
 
     def measured_m_s(self) -> Wheels:
         """Returns the mean rim speeds since the last call; the present ones if no time has passed."""

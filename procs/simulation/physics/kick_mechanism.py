@@ -46,6 +46,7 @@ class Kicker:
         self._dribble = False
         self._charged_from_us = 0
         self._handling_from_us = 0
+        self._work_j = 0.0
 
     def command(self, command: KickerCommand, now_us: int) -> None:
         """Takes the newest command of the driver."""
@@ -82,11 +83,17 @@ class Kicker:
         missing_s = (self._charged_from_us - now_us) / 1e6
         return min(1.0, max(0.0, 1.0 - missing_s / self._settings.recharge_s))
 
+    def take_work_j(self) -> float:
+        """Returns the energy that kicks since the last call gave to the ball, or would have given to a resting one."""
+        work_j, self._work_j = self._work_j, 0.0
+        return work_j
+
     def _fire(self, speed_m_s: float, elevation_rad: float) -> Push | None:
         speed_error, direction_error = self._rng.standard_normal(2).tolist()
+        limit_m_s = self._settings.limit_m_s * math.cos(elevation_rad)
+        self._work_j += self.mouth.ball_mass_kg * (min(speed_m_s, limit_m_s) / math.cos(elevation_rad)) ** 2 / 2
         if not self.mouth.holds_ball:
             return None
-        limit_m_s = self._settings.limit_m_s * math.cos(elevation_rad)
         speed_m_s = min(speed_m_s, limit_m_s) * (1 + self._noise.kick_speed_sd * speed_error)
         error_rad = math.radians(self._noise.kick_direction_sd_deg) * direction_error
         return Push(self.mouth.kick(speed_m_s, error_rad), kicked=True, lift_m_s=speed_m_s * math.tan(elevation_rad))

@@ -8,6 +8,7 @@ import numpy as np
 from procs.model.kinematics import Wheels
 from procs.simulation.physics.realism import Noise
 
+_ACCELERATION_SD_M_S2 = 0.0  # the simulated accelerometer has no error of its own
 _LEAST_S = 1e-3  # a shorter time between readings gives no more noise
 
 
@@ -35,6 +36,12 @@ class Inertial(NamedTuple):
     ax_m_s2: float
     """Mean acceleration since the last reading, robot frame."""
     ay_m_s2: float
+    heading_sd_rad: float
+    """Standard deviation from reading to reading, without the drift; 0: no error."""
+    yaw_rate_sd_rad_s: float
+    """The same of the yaw rate, without its constant error."""
+    acceleration_sd_m_s2: float
+    """The same of each acceleration."""
 
 
 class Imu:
@@ -54,11 +61,18 @@ class Imu:
         drift, compass, gyro = self._rng.standard_normal(3).tolist()
         self._drift_rad += self._noise.compass_drift_sd_rad * math.sqrt(passed_s / 60.0) * drift
         root = math.sqrt(max(passed_s, _LEAST_S))
-        measured_rad = heading_rad + self._drift_rad + self._noise.compass_noise_sqrt_s / root * compass
-        rate_rad_s = yaw_rate_rad_s + self._bias_rad_s + self._noise.gyro_noise_sqrt_s / root * gyro
+        heading_sd_rad, rate_sd_rad_s = self._noise.compass_noise_sqrt_s / root, self._noise.gyro_noise_sqrt_s / root
+        measured_rad = heading_rad + self._drift_rad + heading_sd_rad * compass
+        rate_rad_s = yaw_rate_rad_s + self._bias_rad_s + rate_sd_rad_s * gyro
         before, self._before_m_s = self._before_m_s or velocity_m_s, velocity_m_s
         ax, ay = ((now - then) / max(passed_s, _LEAST_S) for now, then in zip(velocity_m_s, before, strict=True))
         cosine, sine = math.cos(heading_rad), math.sin(heading_rad)
         return Inertial(
-            math.remainder(measured_rad, 2 * math.pi), rate_rad_s, cosine * ax + sine * ay, cosine * ay - sine * ax
+            math.remainder(measured_rad, 2 * math.pi),
+            rate_rad_s,
+            cosine * ax + sine * ay,
+            cosine * ay - sine * ax,
+            heading_sd_rad,
+            rate_sd_rad_s,
+            _ACCELERATION_SD_M_S2,
         )

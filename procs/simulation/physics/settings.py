@@ -3,9 +3,9 @@
 Values without a source are estimates.
 """
 
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import BaseModel, ConfigDict, Field, PositiveFloat
+from pydantic import BaseModel, ConfigDict, Field, PositiveFloat, model_validator
 
 
 class _Settings(BaseModel):
@@ -74,6 +74,33 @@ class ContactSettings(_Settings):
     """Root of the friction of two robots."""
 
 
+class BatterySettings(_Settings):
+    """Battery, and what takes energy out of it. A match of 2 x 15 minutes with its stops has to fit into one charge."""
+
+    capacity_wh: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] = 260.0
+    """Energy of a full battery in watt-hours: seven lithium cells in a row of 10 Ah and 3.7 V; an estimate."""
+    full_v: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] = 29.4
+    """Voltage of a full battery in volts: seven cells of 4.2 V, as data sheets of lithium cells say."""
+    empty_v: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] = 21.0
+    """Voltage at which it counts as empty, in volts: seven cells of 3.0 V, as data sheets of lithium cells say."""
+    idle_w: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] = 100.0
+    """Power in watts of computer, cameras and electronics, whatever the robot does; an estimate."""
+    drive_efficiency: Annotated[float, Field(gt=0.0, le=1.0)] = 0.6
+    """Work of the wheels at their rims divided by the energy that motors and gears take for it; an estimate."""
+    rolling_resistance: Annotated[float, Field(ge=0.0, le=1.0)] = 0.03
+    """Force that a wheel on the carpet costs, divided by the weight on it; an estimate. It takes energy only: the
+    simulated wheels are not braked by it."""
+    kick_efficiency: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
+    """Energy of the kicked ball divided by the energy that charges the kicker for it; an estimate: a ball of 0.43 kg
+    at 12 m/s has 31 J, and the capacitor of such a kicker holds some hundred."""
+
+    @model_validator(mode="after")
+    def _full_is_higher(self) -> Self:
+        if self.full_v < self.empty_v:
+            raise ValueError(f"full_v is {self.full_v} V, below empty_v of {self.empty_v} V; it should be above")
+        return self
+
+
 class PhysicsSettings(_Settings):
     """Parameters of the world's motion, besides field, robots and ball."""
 
@@ -81,6 +108,7 @@ class PhysicsSettings(_Settings):
     handling: HandlingSettings = HandlingSettings()
     kicker: KickerSettings = KickerSettings()
     contacts: ContactSettings = ContactSettings()
+    battery: BatterySettings = BatterySettings()
     step_s: Annotated[float, Field(gt=0.0, le=0.005)] = 0.005
     """Longest step of the integration; a tick is cut into equal steps no longer than this. In longer steps than 5 ms
     the force of a wheel, which is steep in its slip, oscillates."""

@@ -10,7 +10,8 @@ from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.robot import PLAYERS, ROBOT, Player, RobotModel
 from procs.simulation.physics.arena import build_arena
-from procs.simulation.physics.ball_body import Ball
+from procs.simulation.physics.ball_body import GRAVITY_M_S2, Ball
+from procs.simulation.physics.battery import Battery
 from procs.simulation.physics.bodies import Bodies, State
 from procs.simulation.physics.contacts import Contacts
 from procs.simulation.physics.crossbar import Crossbar
@@ -58,6 +59,7 @@ class World:
         self._bar = Crossbar(self._field, self.ball, self._physics.contacts.post_bounce)
         self.robots: dict[str, Robot] = {}
         self.kickers: dict[str, Kicker] = {}
+        self.batteries: dict[str, Battery] = {}
         self._starts: dict[str, Pose] = {}
         for name in sorted(robots):
             drive = Drive(robot, self._physics.drive, noise.drive_delay_s)
@@ -66,8 +68,10 @@ class World:
             body.put(*self._starts[name])
             mouth = Mouth(body, self.ball, self._physics.handling, 1.0 - noise.handling_loss)
             self.kickers[name] = Kicker(mouth, self._physics.kicker, noise, rng)
+            self.batteries[name] = Battery(self._physics.battery)
         self._contacts = Contacts(self._space, list(self.robots.values()))
         self._judge = LineJudge(self._field, self.ball.radius_m)
+        self._wheel_load_n = robot.mass_kg * GRAVITY_M_S2 / 3
         self._bodies = Bodies(self._space)
         self._in_order = [(name, robot, self.kickers[name]) for name, robot in self.robots.items()]
         self._near_m2 = max([kicker.mouth.far_m for kicker in self.kickers.values()], default=0.0) ** 2
@@ -78,9 +82,10 @@ class World:
         return self._judge.ball_in_field
 
     def return_to_starts(self) -> None:
-        """Sets all robots down at the places where they began."""
+        """Sets all robots down at the places where they began, with full batteries."""
         for name, pose in self._starts.items():
             self.place_robot(name, pose)
+            self.batteries[name].refill()
 
     def place_robot(self, name: str, pose: Pose) -> None:
         """Sets a robot down at rest; a ball that lies in its way is put beside it."""
@@ -117,7 +122,13 @@ class World:
             self.time_us = start_us + duration_us * step // steps
             states = self._step(duration_us / steps / 1e6, states, touched, events)
         self.time_us = start_us + duration_us
+        self._drain_batteries(duration_us / 1e6)
         return sorted([*events, *touched.values(), *self._contacts.take_collisions()])
+
+    def _drain_batteries(self, duration_s: float) -> None:
+        for name, robot, kicker in self._in_order:
+            rolled_n_m = self._wheel_load_n * sum(map(abs, robot.drive.wheels_m_s)) * duration_s
+            self.batteries[name].drain(robot.drive.take_work_j(), kicker.take_work_j(), rolled_n_m, duration_s)
 
     def _step(
         self, duration_s: float, states: list[State], touched: dict[str, Event], events: list[Event]

@@ -110,7 +110,7 @@ def test_the_command_shows_a_table_and_json(tmp_path: Path) -> None:
         f"{log}: {log.stat().st_size} bytes, 4 events on 1 channels\nduration 0.200 s, ticks 1 to 5\n" in shown.stdout
     )
     row = next(line for line in shown.stdout.splitlines() if line.startswith("cyan1/odometry"))
-    assert row.split() == ["cyan1/odometry", "robot.odometry_t", "4", "15.0", str(4 * 113), "1-5", "1", "(3)"]
+    assert row.split() == ["cyan1/odometry", "robot.odometry_t", "4", "15.0", str(4 * 185), "1-5", "1", "(3)"]
     told = json.loads(CliRunner().invoke(app, ["--json", str(log)]).stdout)
     assert told["ticks"] == [1, 5]
     assert told["channels"]["cyan1/odometry"]["lost"] == 1

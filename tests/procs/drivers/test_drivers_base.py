@@ -3,12 +3,16 @@
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 from fwk.testing import Bench
+from lcmtypes.core import log_t
 from lcmtypes.robot import motor_command_t, wheel_state_t
-from procs.drivers.base import Base
-from procs.model.kinematics import Velocity, velocity_of, wheels_of
+from procs.drivers.base import Base, BaseConfig
+from procs.model.kinematics import STANDSTILL, Velocity, velocity_of, wheels_of
+from procs.simulation.physics.realism import noise_of
+from procs.simulation.physics.sensors import Encoders
 
 
 def bench(**settings: Any) -> Bench:
@@ -117,6 +121,87 @@ def test_impossible_wheel_speeds_are_refused_with_a_warning(speed_m_s: float) ->
     roll(base, Velocity(1.0, 0.0, 0.0), 1)
     assert base.port("odometry").sent[-1].x_m == pytest.approx(0.05)
     assert base.logged[0].text == f"wheel speeds 0.0, {speed_m_s}, 0.0 m/s are impossible; ignored"
+
+
+@pytest.mark.parametrize("measured_m_s", [[], [0.1, 0.2], [0.1, 0.2, 0.3, 0.4]])
+def test_wrong_number_of_wheels_is_an_error_told_once(measured_m_s: list[float]) -> None:
+    base = bench()
+    for _ in range(3):
+        base.port("wheel_state").put(measured_m_s=measured_m_s)
+        base.iterate(stage="sensor_acquire")
+    assert base.port("odometry").sent[-1].x_m == 0.0
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    assert base.port("odometry").sent[-1].vx_m_s == pytest.approx(1.0)
+    assert [(line.level, line.text) for line in base.logged] == [
+        (
+            log_t.ERROR,
+            f"wheel_state of an unknown writer has {len(measured_m_s)} wheel speeds; this robot has 3 wheels, at 60, "
+            "180, 300 degrees from forward, and needs one speed for each, in this order; ignored",
+        )
+    ]
+
+
+def test_each_wrong_number_of_wheels_is_told() -> None:
+    base = bench()
+    for number in (2, 4, 4):
+        base.port("wheel_state").put(measured_m_s=[0.0] * number)
+        base.iterate(stage="sensor_acquire")
+    assert [line.text.partition(";")[0][-14:] for line in base.logged] == ["2 wheel speeds", "4 wheel speeds"]
+
+
+def test_covariance_is_that_of_the_wheels_by_their_geometry() -> None:
+    base = bench(wheel_scale_sd=0.03, wheel_noise_sqrt_s=0.01, wheel_resolution_m_s=0.002)
+    base.iterate(stage="sensor_acquire")
+    assert not np.any(base.port("odometry").sent[-1].velocity_covariance), (
+        "nothing is known before the first measurement"
+    )
+    velocity = Velocity(1.0, 0.5, -2.0)
+    roll(base, velocity, 1)
+    relative = 0.03**2 + 0.01**2 / 0.05  # ticks of 50 ms
+    variances_m2_s2 = relative * np.square(wheels_of(velocity, 0.2)) + 0.002**2
+    by_wheel = np.array([velocity_of((float(a), float(b), float(c)), 0.2) for a, b, c in np.eye(3)]).T
+    expected = by_wheel @ np.diag(variances_m2_s2) @ by_wheel.T
+    assert np.allclose(base.port("odometry").sent[-1].velocity_covariance, expected, rtol=1e-12, atol=1e-18)
+
+
+def test_covariance_covers_the_errors_of_simulated_encoders() -> None:
+    velocity, errors, base = Velocity(1.0, -0.5, 1.0), [], bench()
+    for seed in range(400):
+        encoders = Encoders(noise_of("realistic", {}), np.random.default_rng(seed))
+        base.port("wheel_state").put(measured_m_s=encoders.read(wheels_of(velocity, 0.2), 0.05))
+        base.iterate(stage="sensor_acquire")
+        odometry = base.port("odometry").sent[-1]
+        errors.append(np.subtract((odometry.vx_m_s, odometry.vy_m_s, odometry.omega_rad_s), velocity))
+    roll(base, velocity, 1)
+    told = np.array(base.port("odometry").sent[-1].velocity_covariance)
+    assert np.mean([error @ np.linalg.solve(told, error) for error in errors]) == pytest.approx(3.0, abs=0.4)
+
+
+def test_standing_wheels_have_a_proper_covariance() -> None:
+    base = bench()
+    roll(base, STANDSTILL, 1)
+    assert np.linalg.eigvalsh(base.port("odometry").sent[-1].velocity_covariance).min() > 1e-7
+
+
+def test_impossible_wheel_speeds_leave_the_covariance() -> None:
+    base = bench()
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    before = base.port("odometry").sent[-1].velocity_covariance
+    base.port("wheel_state").put(measured_m_s=[math.nan, math.inf, 1e300])
+    base.iterate(stage="sensor_acquire")
+    assert base.port("odometry").sent[-1].velocity_covariance == before
+
+
+def test_wheel_errors_are_those_of_the_realistic_preset() -> None:
+    config, noise = BaseConfig(), noise_of("realistic", {})
+    assert (config.wheel_scale_sd, config.wheel_noise_sqrt_s) == (noise.wheel_scale_sd, noise.wheel_noise_sqrt_s)
+
+
+@pytest.mark.parametrize("name", ["wheel_scale_sd", "wheel_noise_sqrt_s", "wheel_resolution_m_s"])
+@pytest.mark.parametrize("deviation", [-0.1, math.nan, math.inf])
+def test_deviations_that_cannot_be_are_refused(name: str, deviation: float) -> None:
+    with pytest.raises(ValueError, match=name):
+        bench(**{name: deviation})
 
 
 def test_after_a_long_silence_only_the_last_period_counts() -> None:

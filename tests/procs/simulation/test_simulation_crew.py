@@ -1,6 +1,7 @@
 """Commands to the simulator: robots and ball are put down, the world stands still and begins anew."""
 
 import math
+from typing import Any
 
 import pytest
 
@@ -12,8 +13,8 @@ from procs.simulation.simulator import Simulator
 ROBOTS = ("cyan1", "magenta1")
 
 
-def bench() -> Bench:
-    return Bench(Simulator, name="world/simulator", namespaces=ROBOTS, realism="none")
+def bench(**settings: Any) -> Bench:
+    return Bench(Simulator, name="world/simulator", namespaces=ROBOTS, realism="none", **settings)
 
 
 def test_robot_is_set_down_elsewhere() -> None:
@@ -84,6 +85,29 @@ def test_frozen_world_stands_still_and_continues() -> None:
     world.port("freeze").put(frozen=False)
     world.iterate()
     assert world.port("ground_truth").sent[-1].ball_x_m == pytest.approx(places[-1] + 0.09, abs=0.02)
+
+
+def test_frozen_world_takes_nothing_out_of_batteries() -> None:
+    world = bench()
+    world.port("freeze").put(frozen=True)
+    world.iterate(100)
+    assert {sent.charge for sent in world.port("battery_state", "cyan1").sent} == {1.0}
+    world.port("freeze").put(frozen=False)
+    world.iterate(21)
+    assert world.port("battery_state", "cyan1").sent[-1].charge < 1.0
+
+
+def test_reset_puts_full_batteries_in() -> None:
+    world = bench(physics={"battery": {"capacity_wh": 0.01}})
+    world.iterate(30)
+    assert world.port("battery_state", "cyan1").sent[-1].charge == 0.0
+    world.port("reset").put()
+    world.iterate()
+    command = wheel_command_t(wheel_m_s=[0.1, 0.1, 0.1])
+    command.header.time_us = world.time_us
+    world.port("wheel_command", "cyan1").put(command)
+    world.iterate(3)
+    assert world.port("ground_truth").sent[-1].robots[0].omega_rad_s > 0.1
 
 
 def test_reset_takes_robots_and_ball_back() -> None:

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from fwk.testing import Bench
-from lcmtypes.soccer import team_message_t
+from lcmtypes.soccer import obstacle_t, team_message_t
+from procs.model.realism import Realism
 from procs.simulation.radio import Radio
 
 TEAM = ("cyan1", "cyan2", "cyan3", "cyan4", "cyan5")
@@ -18,9 +19,9 @@ def radio(seed: int = 1, **settings: float) -> Bench:
     return Bench(Radio, "team_cyan/radio", seed, namespaces=TEAM, **links)
 
 
-def say(bench: Bench, robot: str) -> None:
+def say(bench: Bench, robot: str, **members: Any) -> None:
     """Sends the tick from the robot."""
-    message = team_message_t()
+    message = team_message_t(**members)
     message.robot = robot
     message.header.tick = bench.tick + 1
     message.header.time_us = bench.time_us + 50_000
@@ -140,6 +141,28 @@ def test_interrupted_links_lose_messages_in_a_row() -> None:
     runs = sum(later - earlier > 1 for earlier, later in itertools.pairwise(lost)) + 1
     assert 0.03 < len(lost) / 1200 < 0.2
     assert len(lost) / runs > 8
+
+
+@pytest.mark.parametrize("realism", ["friendly", "realistic", "harsh"])
+def test_longest_messages_arrive_like_the_shortest(realism: Realism) -> None:
+    """A team that sends ten times a second is far from the limit of the channel."""
+
+    def arrivals(*obstacles: obstacle_t) -> list[tuple[str, int, str, int]]:
+        bench = Bench(Radio, "team_cyan/radio", 1, namespaces=TEAM, realism=realism)
+        for _ in range(100):
+            for robot in TEAM if bench.tick % 2 else ():
+                say(bench, robot, obstacles=list(obstacles))
+            bench.iterate()
+        inboxes = {robot: bench.port("inboxes", robot).sent for robot in TEAM}
+        return [
+            (robot, inbox.header.tick, message.robot, message.header.tick)
+            for robot, sent in inboxes.items()
+            for inbox in sent
+            for message in inbox.messages
+        ]
+
+    assert arrivals(*[obstacle_t()] * 9) == arrivals()
+    assert arrivals()
 
 
 def test_narrow_channel_loses_what_is_beyond_it() -> None:

@@ -26,7 +26,9 @@ from lcmtypes.robot import (
 from lcmtypes.soccer import ball_placement_t, game_state_t, ground_truth_t, match_event_t, match_events_t
 from procs.drivers.base import Base
 from procs.drivers.kicker import Kicker
+from procs.model.realism import Realism
 from procs.referee.referee import Referee
+from procs.simulation.physics.realism import noise_of
 from procs.simulation.simulator import Simulator, SimulatorConfig
 
 ROBOTS = ("cyan1", "cyan2", "magenta1")
@@ -122,6 +124,18 @@ def test_wheels_turn_and_are_measured() -> None:
     assert world.port("wheel_state", "cyan1").sent[-1].measured_m_s == pytest.approx([-0.866, 0.0, 0.866], abs=1e-3)
 
 
+@pytest.mark.parametrize("wheel_m_s", [[], [1.0], [1.0, 1.0, 1.0, 1.0]])
+def test_command_for_another_number_of_wheels_stops(wheel_m_s: list[float]) -> None:
+    world = bench()
+    tick(world, 20, cyan1=[-0.866, 0.0, 0.866])
+    assert tick(world, 20, cyan1=wheel_m_s).robots[0].vx_m_s == pytest.approx(0.0, abs=1e-3)
+    assert [line.text for line in world.logged] == [
+        f"cyan1/wheel_command of an unknown writer has {len(wheel_m_s)} wheel speeds; this robot has 3 wheels, at 60, "
+        "180, 300 degrees from forward, and needs one speed for each, in this order; cyan1 stops"
+    ]
+    assert tick(world, 20, cyan1=[-0.866, 0.0, 0.866]).robots[0].vx_m_s == pytest.approx(1.0, abs=0.01)
+
+
 def test_robot_that_receives_nothing_stops() -> None:
     world = bench()
     tick(world, 20, cyan1=[-0.866, 0.0, 0.866])
@@ -193,6 +207,24 @@ def test_impossible_placement_is_refused_with_a_warning() -> None:
     world.port("ball_placement").put(placement_id=1, x_m=math.nan, y_m=0.0)
     assert tick(world).ball_x_m == 0.0
     assert [line.text for line in world.logged] == ["ball placement 1 asks for (nan, 0.0); ignored"]
+
+
+@pytest.mark.parametrize(("realism", "period_s"), [("none", 0.05), ("realistic", 0.05), ("harsh", 0.02)])
+def test_compass_and_gyro_tell_their_deviations(realism: Realism, period_s: float) -> None:
+    world, noise = bench(realism=realism, period_s=period_s), noise_of(realism, {})
+    tick(world)
+    imu = world.port("imu", "cyan1").sent[-1]
+    assert imu.heading_sd_rad == pytest.approx(noise.compass_noise_sqrt_s / math.sqrt(period_s))
+    assert imu.yaw_rate_sd_rad_s == pytest.approx(noise.gyro_noise_sqrt_s / math.sqrt(period_s))
+    assert imu.acceleration_sd_m_s2 == 0.0, "the simulated accelerometer has no error"
+
+
+def test_deviations_cover_the_noise_of_compass_and_gyro() -> None:
+    world = bench(realism="realistic", errors={"compass_drift_sd_rad": 0.0, "gyro_bias_sd_rad_s": 0.0})
+    tick(world, 400)
+    sent = world.port("imu", "cyan2").sent
+    assert np.std([imu.heading_rad for imu in sent]) == pytest.approx(sent[-1].heading_sd_rad, rel=0.1)
+    assert np.std([imu.yaw_rate_rad_s for imu in sent]) == pytest.approx(sent[-1].yaw_rate_sd_rad_s, rel=0.1)
 
 
 def test_realism_makes_odometry_drift_from_the_truth() -> None:

@@ -69,8 +69,9 @@ def test_ideal_sensors_report_the_truth() -> None:
     heading_rad, yaw_rate_rad_s, *_ = imu.read(3.5, 0.7, (1.0, 0.0), 0.05)
     assert heading_rad == pytest.approx(3.5 - 2 * math.pi)
     assert yaw_rate_rad_s == 0.7
-    *_, ax_m_s2, ay_m_s2 = imu.read(math.pi / 2, 0.7, (1.0, 0.2), 0.05)
-    assert (ax_m_s2, ay_m_s2) == pytest.approx((4.0, 0.0))
+    reading = imu.read(math.pi / 2, 0.7, (1.0, 0.2), 0.05)
+    assert (reading.ax_m_s2, reading.ay_m_s2) == pytest.approx((4.0, 0.0))
+    assert (reading.heading_sd_rad, reading.yaw_rate_sd_rad_s, reading.acceleration_sd_m_s2) == (0.0, 0.0, 0.0)
 
 
 def test_sensor_noise_is_the_same_in_a_second_at_any_rate() -> None:
