@@ -118,7 +118,7 @@ def test_several_runs_are_all_asked_if_none_is_named(asked: list[str | None], mo
         ("cut {log} --channels ", ["world/image", "world/imu"]),
         ("play {log} --remap world/im", ["world/image=", "world/imu="]),
         ("plot --from {log} world/im", ["world/image.", "world/imu."]),
-        ("plot world/imu.yaw --from {log} world/imu.yaw", ["world/imu.yaw_rate_rad_s"]),
+        ("plot world/imu.yaw_rate_r --from {log} world/imu.yaw_rate_r", ["world/imu.yaw_rate_rad_s"]),
         ("cut {log}.none --channels ", []),
     ],
 )
