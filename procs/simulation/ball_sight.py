@@ -21,7 +21,7 @@ _LEAST_AREA = 1e-6
 
 @dataclass(frozen=True)
 class BallSight:
-    """What a camera finds of a ball of known size."""
+    """Draws the percepts that a camera gives of a ball of known size."""
 
     mirror: Mirror
     radius_m: float

@@ -33,7 +33,7 @@ class BallSighting:
     x_m: float
     y_m: float
     z_m: float
-    """Of the lowest point; 0: on the ground."""
+    """Height of the ball's lowest point; 0 for a ball on the ground."""
     covariance_m2: Floats
     """2 x 2, of x and y: one standard deviation is what the measured errors are at that distance."""
     confidence: float

@@ -95,7 +95,7 @@ class Sighting:
     covariance_m2: Floats
     age_s: float = 0.0
     height_m: float = 0.0
-    """Of the ball's lowest point; 0: it seems to lie on the ground."""
+    """Height of the ball's lowest point; 0 for a ball that seems to lie on the ground."""
     observer_m: Floats | None = None
     """(2): place of the robot, if it is known."""
 

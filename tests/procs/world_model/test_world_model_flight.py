@@ -45,6 +45,15 @@ def seen(place: Floats, rng: np.random.Generator, own: bool = True) -> Sighting 
     return Sighting("a", own, noisy[:2], np.eye(2) * 0.03**2, height_m=float(noisy[2]), observer_m=EYE_M)
 
 
+def just_lobbed(lift_m_s: float) -> BallTracker:
+    """Returns the tracker of a robot that has just kicked the ball from the origin along x."""
+    tracker = BallTracker()
+    tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    tracker.hold("a", np.zeros(4), np.zeros((4, 4)))
+    tracker.kick(np.array((SPEED_M_S, 0.0)), lift_m_s=lift_m_s)
+    return tracker
+
+
 def test_flight_is_a_parabola_with_bounces() -> None:
     flight = Flight.of_kick(LIFT_M_S)
     for place, velocity in islice(lobbed(), 27):
@@ -70,10 +79,7 @@ def test_kick_along_the_ground_is_no_flight() -> None:
 
 
 def test_own_lob_is_known_without_any_sighting() -> None:
-    tracker = BallTracker()
-    tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
-    tracker.hold("a", np.zeros(4), np.zeros((4, 4)))
-    tracker.kick(np.array((SPEED_M_S, 0.0)), lift_m_s=LIFT_M_S)
+    tracker = just_lobbed(LIFT_M_S)
     for place, velocity in islice(lobbed(), 15):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
         assert tracker.track.state[:2] == pytest.approx(place[:2], abs=0.05)
@@ -132,10 +138,7 @@ def kick(robot: Robot, lift_m_s: float) -> None:
 
 def test_ball_that_flies_is_not_braked_and_one_that_landed_is() -> None:
     def after(lift_m_s: float, ticks: int) -> float:
-        tracker = BallTracker()
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
-        tracker.hold("a", np.zeros(4), np.zeros((4, 4)))
-        tracker.kick(np.array((SPEED_M_S, 0.0)), lift_m_s=lift_m_s)
+        tracker = just_lobbed(lift_m_s)
         for _ in range(ticks):
             tracker.advance(PERIOD_S, 5.0, ROLLING_M_S2)
         return float(tracker.track.state[2])
@@ -147,10 +150,7 @@ def test_ball_that_flies_is_not_braked_and_one_that_landed_is() -> None:
 
 def test_sighting_at_another_height_does_not_fit() -> None:
     """An orange thing on the ground below the ball is another one."""
-    tracker = BallTracker()
-    tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
-    tracker.hold("a", np.zeros(4), np.zeros((4, 4)))
-    tracker.kick(np.array((SPEED_M_S, 0.0)), lift_m_s=LIFT_M_S)
+    tracker = just_lobbed(LIFT_M_S)
     for _ in range(4):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
     before_m = tracker.track.state
@@ -158,11 +158,8 @@ def test_sighting_at_another_height_does_not_fit() -> None:
     assert tracker.track.state == pytest.approx(before_m)
 
 
-def test_lob_that_meets_something_unseen_is_found_with_one_sighting() -> None:
-    tracker = BallTracker()
-    tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
-    tracker.hold("a", np.zeros(4), np.zeros((4, 4)))
-    tracker.kick(np.array((SPEED_M_S, 0.0)), lift_m_s=LIFT_M_S)
+def test_lob_that_met_something_is_found_with_one_sighting() -> None:
+    tracker = just_lobbed(LIFT_M_S)
     for _ in range(8):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
     place_m = np.array((1.0, 0.5))
@@ -181,7 +178,7 @@ def test_ball_leaves_the_ground_only_with_a_reason() -> None:
         assert tracker.flight is None
 
 
-def test_ball_that_enters_the_mouth_keeps_its_speed_until_it_touches() -> None:
+def test_ball_in_the_mouth_keeps_its_speed_until_it_touches() -> None:
     """The light barrier sees the ball a few centimetres before the mouth stops it."""
     robot = Robot("cyan1", (0.0, 0.0, 0.0), 3, sight_correlation=1.0)
     mouth_m = robot.bench.component._mouth_m
