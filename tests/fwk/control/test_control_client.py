@@ -75,17 +75,20 @@ def test_a_request_that_waits_names_what_the_run_waits_for(
 
     def serve() -> None:
         slow, _ = listening.accept()
+        bound.append(slow)
         slow.sendall(b'{"ok": true,')
         other, _ = listening.accept()
+        bound.append(other)
         other.sendall(b'{"ok": true, "waits_for": ["a/b"]}\n')
         slow.sendall(b' "tick": 7}\n')
-        bound.extend((slow, other))
 
-    threading.Thread(target=serve, daemon=True).start()
+    serving = threading.Thread(target=serve, daemon=True)
+    serving.start()
     said: list[str] = []
     before = client.notice.set(said.append)
     with Client(str(listening.getsockname().decode())) as run:
         assert run.ask("pause")["tick"] == 7
+    serving.join()
     client.notice.reset(before)
     assert said == ["no answer yet; the run waits for a/b"]
 
