@@ -40,7 +40,9 @@ def test_dead_ball_does_not_bounce() -> None:
     bounced, _ = flight.moved(flies_s + 0.05, BALL)
     assert bounced is not None
     assert bounced.lift_m_s == pytest.approx(0.6 * 3.0 - 9.81 * 0.05, abs=0.01)
-    assert flight.moved(flies_s + 0.05, BALL.model_copy(update={"bounce": 0.1})) == (None, pytest.approx(0.05))
+    lies, grounded_s = flight.moved(flies_s + 0.05, BALL.model_copy(update={"bounce": 0.1}))
+    assert lies is None
+    assert grounded_s == pytest.approx(0.05)
 
 
 def test_another_ball_in_the_settings_begins_a_new_track() -> None:

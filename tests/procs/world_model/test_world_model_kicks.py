@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pytest
 
-from procs.model.ball import BALL, SLIDING_M_S2
+from procs.model.ball import BALL
 from procs.simulation.physics.rolling import RollingFriction
 from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
@@ -170,7 +170,7 @@ def test_kick_of_a_mate_begins_at_its_mouth() -> None:
     for frame in range(8):
         tracker.advance(PERIOD_S, 2.0, contact=True)
         flight_s = max(0, frame - 5) * PERIOD_S
-        ball_m = np.array((8.0 * flight_s - SLIDING_M_S2 / 2 * flight_s**2, 0.0))
+        ball_m = np.array((8.0 * flight_s - BALL.sliding_m_s2 / 2 * flight_s**2, 0.0))
         tracker.see(Sighting("me", True, ball_m, np.eye(2) * 0.05**2))
     mouth = Seen.of([(0.0, 0.0)], [np.eye(2) * 0.03**2], [0.0])
     tracker.kick(np.array((8.0, 0.0)), 0.1, mouth)
