@@ -7,15 +7,17 @@ from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Writes, ch
 from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import game_state_t, pass_agreement_t, role_t, skill_command_t, world_model_t
 from procs.behaviour import greedy, roles
+from procs.behaviour.bodies import Bodies
 from procs.behaviour.game import Game, frame_of, game_of
 from procs.behaviour.identity import team_of_player
 from procs.behaviour.order import Order
 from procs.behaviour.skills.book import SKILLS
 from procs.behaviour.tactics import Tactics, leave_field
 from procs.behaviour.view import View, view_of
+from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import wrap_rad
-from procs.model.robot import PLAYERS, Players
+from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.referee.ends import Team
 
 _EXPIRES_S = 1.0
@@ -29,6 +31,10 @@ class AgentConfig(Config):
     """Measures of the field."""
     players: Players = dict(PLAYERS)
     """Team and number of each robot."""
+    robot: RobotModel = ROBOT
+    """Geometry of all robots."""
+    ball: BallModel = BALL
+    """Size and friction of the ball."""
     strategy: Literal["team", "greedy"] = "team"
     """`team`: roles, passes and formations; `greedy`: the simple opponent, which chases the ball."""
     new_target_m: float = 0.05
@@ -56,6 +62,10 @@ class Agent(Component):
         self._frame = frame_of(self.game_state.value, self._team)
         self._tactics = Tactics(self.config.field)
         self._call: Call | None = None
+        self.config_changed()
+
+    def config_changed(self) -> None:
+        self._bodies = Bodies.of(self.config.robot, self.config.ball)
 
     @property
     def _team(self) -> Team:
@@ -68,9 +78,10 @@ class Agent(Component):
         game = game_of(self.game_state.value, self._team, frame)
         if role.role == roles.ABSENT and self._robot not in game.sent_off:
             role.role = roles.DEFENDER
-        model, said = self.world_model.value, self._tactics.passing.said
-        view = view_of(model, self._robot, role.role, frame, agreement=said, players=self.config.players)
-        view = view.without(game.sent_off)
+        model, said, players = self.world_model.value, self._tactics.passing.said, self.config.players
+        view = view_of(
+            model, self._robot, role.role, frame, agreement=said, players=players, bodies=self._bodies
+        ).without(game.sent_off)
         role.role, order = self._decide(view, game)
         self._tell_pass(role.agreement)
         role.intention = order.intention or order.skill

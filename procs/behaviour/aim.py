@@ -5,13 +5,11 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from procs.behaviour import ballistics
+from procs.behaviour.bodies import Bodies
 from procs.behaviour.view import Robot
-from procs.model.ball import BALL
 from procs.model.field import Field, Point
 from procs.model.geometry import bearing_rad, wrap_rad
-from procs.model.robot import ROBOT
 
-_BLOCK_M = ROBOT.radius_m + BALL.radius_m  # a ball's middle passes a robot's middle at this distance
 _REACTION_S = 0.25
 _STEP_ASIDE_M_S = 0.8
 _BALL_M_S = 9.0
@@ -42,28 +40,28 @@ class Aim(NamedTuple):
     """Mate for whom a pass is meant."""
 
 
-def lane_rad(start: Point, end: Point, robots: Iterable[Robot], ball_m_s: float = _BALL_M_S) -> float:
+def lane_rad(start: Point, end: Point, robots: Iterable[Robot], bodies: Bodies, ball_m_s: float = _BALL_M_S) -> float:
     """Returns the free angle beside the way of a ball; negative if a robot blocks it, pi without a robot nearby.
 
     A robot far down the way has time to step aside and counts as wider.
     """
     way_m, way_rad = math.dist(start, end), bearing_rad(start, end)
-    free_rad = math.pi
+    free_rad, beside_m = math.pi, bodies.beside_m
     for robot in robots:
         distance_m = math.dist(start, robot.place)
-        if distance_m > way_m + _BLOCK_M:
+        if distance_m > way_m + beside_m:
             continue
         off_rad = abs(wrap_rad(bearing_rad(start, robot.place) - way_rad))
-        width_m = _BLOCK_M + _STEP_ASIDE_M_S * max(0.0, distance_m / ball_m_s - _REACTION_S)
+        width_m = beside_m + _STEP_ASIDE_M_S * max(0.0, distance_m / ball_m_s - _REACTION_S)
         free_rad = min(free_rad, off_rad - math.asin(min(1.0, width_m / max(distance_m, 1e-6))))
     return free_rad
 
 
-def best_shot(start: Point, robots: Iterable[Robot], field: Field) -> Aim:
+def best_shot(start: Point, robots: Iterable[Robot], field: Field, bodies: Bodies) -> Aim:
     """Returns the point of the opponents' goal line with the most room, seen from the ball at `start`."""
     in_the_way = list(robots)
     posts = field.goal_posts(1.0)
-    post_m = field.post_diameter_m / 2 + BALL.radius_m
+    post_m = field.post_diameter_m / 2 + bodies.ball_radius_m
     inner_m = field.goal_width_m / 2 - 0.15
     best = Aim(field.goal_centre(1.0), -math.pi)
     for index in range(_TARGETS):
@@ -73,26 +71,27 @@ def best_shot(start: Point, robots: Iterable[Robot], field: Field) -> Aim:
             abs(wrap_rad(bearing_rad(start, post) - way_rad)) - post_m / max(post_m, math.dist(start, post))
             for post in posts
         )
-        free_rad = min(post_rad, lane_rad(start, target, in_the_way))
+        free_rad = min(post_rad, lane_rad(start, target, in_the_way, bodies))
         if free_rad > best.free_rad:
             best = Aim(target, free_rad)
     return best
 
 
-def best_lob(start: Point, robots: Iterable[Robot], field: Field) -> Aim:
+def best_lob(start: Point, robots: Iterable[Robot], field: Field, bodies: Bodies) -> Aim:
     """Returns the point of the opponents' goal line for a lob, and the room beside the robots that can block it.
 
     A robot, where it will be in a moment, blocks a lob only where the ball has not risen above it yet. Of targets with
     enough room the one furthest from the other robots is best, as a lob that falls short is a shot.
     """
-    near_m = ballistics.lob(math.dist(start, field.goal_centre(1.0))).clear_m(ROBOT.height_m + _OVER_M) + _BLOCK_M
+    lob = ballistics.lob(math.dist(start, field.goal_centre(1.0)), bodies)
+    near_m = lob.clear_m(bodies.robot_height_m + _OVER_M) + bodies.beside_m
     others = list(robots)
     near = [robot._replace(place=_soon(robot)) for robot in others if math.dist(start, robot.place) < near_m]
     deep = [robot for robot in others if math.dist(start, robot.place) >= near_m]
     inner_m = field.goal_width_m / 2 - _LOB_INSIDE_M
 
     def room_rad(target: Point) -> tuple[float, float]:
-        return min(_LOB_RAD, lane_rad(start, target, near)), lane_rad(start, target, deep)
+        return min(_LOB_RAD, lane_rad(start, target, near, bodies)), lane_rad(start, target, deep, bodies)
 
     shares = (2 * index / (_LOB_TARGETS - 1) - 1 for index in range(_LOB_TARGETS))
     best = max((Point(field.half_length_m, inner_m * share) for share in shares), key=room_rad)
@@ -105,7 +104,12 @@ def _soon(robot: Robot) -> Point:
 
 
 def best_pass(
-    player: Robot, mates: Iterable[Robot], opponents: Iterable[Robot], back_m: float = 1.0, kept: str = ""
+    player: Robot,
+    mates: Iterable[Robot],
+    opponents: Iterable[Robot],
+    bodies: Bodies,
+    back_m: float = 1.0,
+    kept: str = "",
 ) -> Aim | None:
     """Finds the mate for the best pass: a free way, ground gained, little turning of the player.
 
@@ -123,7 +127,7 @@ def best_pass(
         gain_m = place.x_m - player.place.x_m
         if not 2.0 <= math.dist(player.place, place) <= 9.0 or gain_m < -back_m:
             continue
-        free_rad = lane_rad(player.place, place, others, ball_m_s=_PASS_M_S)
+        free_rad = lane_rad(player.place, place, others, bodies, _PASS_M_S)
         turn_rad = abs(wrap_rad(bearing_rad(player.place, place) - player.heading_rad))
         worth = min(free_rad, 0.4) + _GAIN_1_M * gain_m - TURN_1_RAD * turn_rad + _KEPT_RAD * (mate.name == kept)
         worth += _ROOM_1_M * min(_ROOM_M, min((math.dist(place, other.place) for other in others), default=_ROOM_M))

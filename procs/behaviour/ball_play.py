@@ -133,8 +133,8 @@ class BallPlay:
             mates = [mate for mate in view.mates if mate.name == kick.receiver]
             return self._pass(view, mates, math.inf, 0.0, kick.receiver)
         if kick.intention == "lob":
-            return kick if aim.best_lob(view.ball.place, view.others, self.field).free_rad > 0.0 else None
-        return kick if aim.lane_rad(view.ball.place, kick.place, view.opponents) > 0.0 else None
+            return kick if aim.best_lob(view.ball.place, view.others, self.field, view.bodies).free_rad > 0.0 else None
+        return kick if aim.lane_rad(view.ball.place, kick.place, view.opponents, view.bodies) > 0.0 else None
 
     def _dribble(self, view: View) -> Order:
         """Takes the ball along where the way is free, towards the goal if possible."""
@@ -147,7 +147,8 @@ class BallPlay:
         inside = [way_rad for way_rad in ways if self._may_carry(ahead(ball, way_rad, _CARRIED_M))] or ways[:1]
 
         def worth(way_rad: float) -> float:
-            free_rad = min(0.6, aim.lane_rad(ball, ahead(ball, way_rad, _CARRIED_M), view.opponents, _SLOW_BALL_M_S))
+            place, rivals = ahead(ball, way_rad, _CARRIED_M), view.opponents
+            free_rad = min(0.6, aim.lane_rad(ball, place, rivals, view.bodies, _SLOW_BALL_M_S))
             kept = not math.isnan(self._dribble_rad) and abs(wrap_rad(way_rad - self._dribble_rad)) < 0.25
             return free_rad - _DETOUR_RAD * abs(wrap_rad(way_rad - goal_rad)) + 0.2 * kept
 
@@ -159,18 +160,18 @@ class BallPlay:
 
     def _make_room(self, view: View, goal_rad: float) -> Order:
         """Takes the ball to where a shot or a lob has the most room, mostly sideways, mouth towards the goal."""
-        ball, others = view.ball.place, view.others
+        ball, others, bodies = view.ball.place, view.others, view.bodies
         start = self._held_from or ball
         places = [ahead(ball, goal_rad + turn_rad, _ASIDE_M) for turn_rad in _ASIDE_RAD]
         possible = [place for place in places if self._may_carry(place) and math.dist(start, place) < _LONGEST_M]
 
         def room_rad(place: Point) -> float:
             kept = math.dist(place, self._room_at) < _ASIDE_M if self._room_at else False
-            shot, lob = (best(place, others, self.field).free_rad for best in (aim.best_shot, aim.best_lob))
+            shot, lob = (best(place, others, self.field, bodies).free_rad for best in (aim.best_shot, aim.best_lob))
             return max(shot, lob) + 0.1 * kept
 
         self._room_at = max(possible, key=room_rad, default=ball)
-        target = aim.best_shot(self._room_at, others, self.field).place
+        target = aim.best_shot(self._room_at, others, self.field, bodies).place
         return Order("dribble", self._room_at, bearing_rad(self._room_at, target), "make room")
 
     def _may_carry(self, place: Point) -> bool:
@@ -185,7 +186,7 @@ class BallPlay:
         start = view.ball.place
         if not self._in_range(start):
             return None
-        best = aim.best_shot(start, view.others, self.field)
+        best = aim.best_shot(start, view.others, self.field, view.bodies)
         if best.free_rad * math.dist(start, best.place) < room_m:
             return None
         return Order("shoot", best.place, bearing_rad(start, best.place), "shoot")
@@ -195,7 +196,7 @@ class BallPlay:
         start = view.ball.place
         if not self._in_range(start):
             return None
-        best = aim.best_lob(start, view.others, self.field)
+        best = aim.best_lob(start, view.others, self.field, view.bodies)
         if best.free_rad < _LOB_RAD:
             return None
         return Order("lob", best.place, bearing_rad(start, best.place), "lob")
@@ -226,7 +227,7 @@ class BallPlay:
         ball, own_rad = view.ball.place, view.own.heading_rad
 
         def worth(way_rad: float) -> float:
-            free_rad = aim.lane_rad(ball, ahead(ball, way_rad, _CLEARED_M), view.others)
+            free_rad = aim.lane_rad(ball, ahead(ball, way_rad, _CLEARED_M), view.others, view.bodies)
             turn_rad = abs(wrap_rad(way_rad - own_rad))
             return min(0.3, free_rad) - aim.TURN_1_RAD * turn_rad + _UPFIELD_1_M * self._upfield_m(ball, way_rad)
 
@@ -244,7 +245,11 @@ class BallPlay:
         goal_rad = bearing_rad(start, self.field.goal_centre(1.0))
         places = [ahead(start, goal_rad + turn_rad, _PUSH_M) for turn_rad in (0.0, 0.5, -0.5, 1.0, -1.0)]
         inside = [place for place in places if self.field.in_field(*place, -0.5)] or places[:1]
-        best = max(inside, key=lambda place: min(0.6, aim.lane_rad(start, place, view.others, _SLOW_BALL_M_S)))
+
+        def room_rad(place: Point) -> float:
+            return min(0.6, aim.lane_rad(start, place, view.others, view.bodies, _SLOW_BALL_M_S))
+
+        best = max(inside, key=room_rad)
         return Order("push", best, bearing_rad(start, best), "push", _PUSH_M_S)
 
     def _pass_on(self, view: View, back_m: float, lane_rad: float = aim.LANE_RAD, kept: str = "") -> Order | None:
@@ -252,7 +257,8 @@ class BallPlay:
 
     def _pass(self, view: View, mates: Sequence[Robot], back_m: float, lane_rad: float, kept: str) -> Order | None:
         asked = [mate for mate in mates if self._passing.may_ask(mate)]
-        best = aim.best_pass(view.own, asked, view.opponents, back_m, kept or self._passing.said.receiver)
+        kept = kept or self._passing.said.receiver
+        best = aim.best_pass(view.own, asked, view.opponents, view.bodies, back_m, kept)
         if best is None or best.free_rad < lane_rad:
             return None
         heading_rad = bearing_rad(view.own.place, best.place)

@@ -3,10 +3,9 @@
 import math
 from typing import NamedTuple
 
-from procs.behaviour.view import Ball
-from procs.model.ball import BALL, ROLLING_M_S2, ROLLING_SHARE, SLIDING_M_S2
+from procs.behaviour.bodies import Bodies
+from procs.behaviour.view import Ball, View
 from procs.model.field import Point
-from procs.model.robot import ROBOT
 
 _STEP_S = 0.1
 _HORIZON_S = 4.0
@@ -19,8 +18,8 @@ _STANDING = Point(0.0, 0.0)
 _GRAVITY_M_S2 = 9.81
 _LOB_M_S, _KICK_M_S = 11.2, 11.9
 """Highest speed of a lob over the ground, and of any kick: the faster, the less its error changes the height."""
-_RISE_S = math.sqrt(2 * (ROBOT.height_m + 0.09) / _GRAVITY_M_S2)
-"""Until a ball is at the top of a flight that passes over robots and under the bar."""
+_OVER_M = 0.09
+"""The top of a lob's flight, which passes over robots and under the bar, is so far above a robot."""
 _KEEPER_M = 0.45
 """A keeper's middle is so far before the goal line."""
 
@@ -48,7 +47,7 @@ class Lob(NamedTuple):
         return self.speed_m_s * (self.lift_m_s - math.sqrt(squared)) / _GRAVITY_M_S2
 
 
-def lob(distance_m: float, carried_m_s: float = 0.0) -> Lob:
+def lob(distance_m: float, bodies: Bodies, carried_m_s: float = 0.0) -> Lob:
     """Returns the lob that is as high as a goalkeeper's top and a little more when it gets to the goal.
 
     Its flight of `distance_m` is a parabola. The robot that kicks drives towards the goal at `carried_m_s`, which makes
@@ -56,37 +55,43 @@ def lob(distance_m: float, carried_m_s: float = 0.0) -> Lob:
     flight above the goalkeeper, from further away on its way down.
     """
     distance_m = max(2 * _KEEPER_M, distance_m)
-    slow_m_s = (distance_m - _KEEPER_M) / _RISE_S
+    rise_s = math.sqrt(2 * (bodies.robot_height_m + _OVER_M) / _GRAVITY_M_S2)
+    slow_m_s = (distance_m - _KEEPER_M) / rise_s
     speed_m_s = min(_LOB_M_S + carried_m_s, slow_m_s)
-    lift_m_s = _lift_m_s(distance_m / speed_m_s)
+    lift_m_s = _lift_m_s(distance_m / speed_m_s, rise_s)
     kick_m_s = math.sqrt(_KICK_M_S**2 - min(_KICK_M_S / 2, lift_m_s) ** 2)
     speed_m_s = min(speed_m_s, kick_m_s + carried_m_s)
-    return Lob(speed_m_s, _lift_m_s(distance_m / speed_m_s))
+    return Lob(speed_m_s, _lift_m_s(distance_m / speed_m_s, rise_s))
 
 
-def _lift_m_s(time_s: float) -> float:
-    """Returns the speed upwards at which the ball has the height of a lob at the goal after a time."""
-    top_m = _GRAVITY_M_S2 * _RISE_S**2 / 2
+def _lift_m_s(time_s: float, rise_s: float) -> float:
+    """Returns the speed upwards at which the ball has the height of a lob at the goal after a time.
+
+    `rise_s` is the time in which a ball falls from that height.
+    """
+    top_m = _GRAVITY_M_S2 * rise_s**2 / 2
     return top_m / time_s + _GRAVITY_M_S2 * time_s / 2
 
 
-def ball_after(ball: Ball, time_s: float) -> Point:
+def ball_after(ball: Ball, time_s: float, bodies: Bodies) -> Point:
     """Returns the position of the rolling ball after `time_s` without a touch."""
     speed_m_s = ball.speed_m_s
     if speed_m_s < 0.05:
         return ball.place
-    rolling_s = min(time_s, speed_m_s / ROLLING_M_S2)
-    share = rolling_s - ROLLING_M_S2 * rolling_s * rolling_s / (2 * speed_m_s)
+    rolling_m_s2 = bodies.rolling_m_s2
+    rolling_s = min(time_s, speed_m_s / rolling_m_s2)
+    share = rolling_s - rolling_m_s2 * rolling_s * rolling_s / (2 * speed_m_s)
     return Point(ball.place.x_m + ball.velocity_m_s.x_m * share, ball.place.y_m + ball.velocity_m_s.y_m * share)
 
 
-def kick_speed_m_s(distance_m: float, arrival_m_s: float) -> float:
+def kick_speed_m_s(distance_m: float, arrival_m_s: float, bodies: Bodies) -> float:
     """Returns the speed of a kick after which the ball still has the arrival speed that far away.
 
-    The ball slides until its speed has fallen to `ROLLING_SHARE` of the kick's, then rolls.
+    The ball slides until its speed has fallen to `rolling_share` of the kick's, then rolls.
     """
-    sliding_m = (1 - ROLLING_SHARE**2) / (2 * SLIDING_M_S2)  # way of sliding for each (m/s)^2 of the kick
-    squared = (arrival_m_s**2 + 2 * ROLLING_M_S2 * distance_m) / (ROLLING_SHARE**2 + 2 * ROLLING_M_S2 * sliding_m)
+    share, rolling_m_s2 = bodies.rolling_share, bodies.rolling_m_s2
+    sliding_m = (1 - share**2) / (2 * bodies.sliding_m_s2)  # way of sliding for each (m/s)^2 of the kick
+    squared = (arrival_m_s**2 + 2 * rolling_m_s2 * distance_m) / (share**2 + 2 * rolling_m_s2 * sliding_m)
     return math.sqrt(max(squared, arrival_m_s**2))
 
 
@@ -110,20 +115,20 @@ _WAYS = [(step * _STEP_S, way_m(step * _STEP_S)) for step in range(round(_HORIZO
 class Course:
     """The ball's way during the next four seconds, and how far a robot can get meanwhile."""
 
-    def __init__(self, ball: Ball, contact_m: float = ROBOT.held_ball_m(BALL)) -> None:
-        """`contact_m` is the distance of the middles of ball and robot when they touch."""
+    def __init__(self, ball: Ball, bodies: Bodies) -> None:
         self._ball = ball
-        self._contact_m = contact_m
+        self._contact_m = contact_m = bodies.held_ball_m  # distance of the middles of ball and robot that meet
         speed_m_s = ball.speed_m_s
         self._resting = speed_m_s < _RESTING_M_S
         self._stations: list[tuple[float, float, float, float]] = []
         """Place of the ball, time, and how near a robot has to be now to meet it there."""
         if self._resting:
             return
-        (x_m, y_m), (vx_m_s, vy_m_s), stands_s = ball.place, ball.velocity_m_s, speed_m_s / ROLLING_M_S2
+        rolling_m_s2 = bodies.rolling_m_s2
+        (x_m, y_m), (vx_m_s, vy_m_s), stands_s = ball.place, ball.velocity_m_s, speed_m_s / rolling_m_s2
         for time_s, robot_m in _WAYS:
             rolling_s = min(time_s, stands_s)
-            share = rolling_s - ROLLING_M_S2 * rolling_s * rolling_s / (2 * speed_m_s)
+            share = rolling_s - rolling_m_s2 * rolling_s * rolling_s / (2 * speed_m_s)
             self._stations.append((x_m + vx_m_s * share, y_m + vy_m_s * share, time_s, robot_m + contact_m))
 
     def meet(self, place: Point, velocity_m_s: Point = _STANDING) -> Meeting:
@@ -143,6 +148,6 @@ class Course:
         return Meeting(Point(x_m, y_m), max(time_s, needed_s))
 
 
-def meet(ball: Ball, place: Point, velocity_m_s: Point = _STANDING) -> Meeting:
-    """Returns the earliest meeting of the ball with a robot at `place` that drives at a velocity."""
-    return Course(ball).meet(place, velocity_m_s)
+def meet(view: View) -> Meeting:
+    """Returns the earliest meeting of the ball with the own robot."""
+    return Course(view.ball, view.bodies).meet(view.own.place, view.own.velocity_m_s)

@@ -4,13 +4,11 @@ import math
 from typing import NamedTuple
 
 from procs.behaviour import ballistics
-from procs.behaviour.view import Ball, Robot
-from procs.model.ball import BALL
+from procs.behaviour.bodies import Bodies
+from procs.behaviour.view import Ball, View
 from procs.model.field import Point
 from procs.model.geometry import ahead, bearing_rad, between, wrap_rad
-from procs.model.robot import ROBOT
 
-_CONTACT_M = ROBOT.held_ball_m(BALL)
 _MARGIN_S = 0.2
 """The robot stands there so long before the ball arrives."""
 _LEAST_M_S = 0.4
@@ -55,8 +53,9 @@ class Interception:
         self._velocity_m_s = between(before, ball.velocity_m_s, share)
         return ball._replace(velocity_m_s=self._velocity_m_s)
 
-    def stand(self, ball: Ball, robot: Robot, duration_s: float) -> Stand | None:
+    def stand(self, view: View, duration_s: float) -> Stand | None:
         """Returns the place where the robot waits for the ball; None if driving to the ball is sooner."""
+        ball, robot, bodies = view.ball, view.own, view.bodies
         speed_m_s = ball.speed_m_s
         way_rad = math.atan2(ball.velocity_m_s.y_m, ball.velocity_m_s.x_m)
         if speed_m_s < _LEAST_M_S or math.cos(bearing_rad(ball.place, robot.place) - way_rad) < _AHEAD:
@@ -64,18 +63,18 @@ class Interception:
             return None
         heading_rad = wrap_rad(way_rad + math.pi)
         if speed_m_s > _FAST_M_S:
-            here = _beside(ball, robot.place, way_rad, heading_rad)
+            here = _beside(view, way_rad, heading_rad)
             if here is not None:
                 self._left_s = here.time_s
                 return here
         self._left_s = max(0.0, self._left_s - duration_s)
-        latest_s = ballistics.meet(ball, robot.place, robot.velocity_m_s).time_s + _WORTH_S
+        latest_s = ballistics.meet(view).time_s + _WORTH_S
         turning_s = abs(wrap_rad(heading_rad - robot.heading_rad)) / _TURN_RAD_S + _TURN_S
         vx_m_s, vy_m_s = robot.velocity_m_s
         start = Point(robot.place.x_m + _CARRY_S * vx_m_s, robot.place.y_m + _CARRY_S * vy_m_s)
 
         def late_s(time_s: float) -> float:
-            way_m = math.dist(start, _mouth_at(ball, time_s, way_rad))
+            way_m = math.dist(start, _mouth_at(ball, time_s, way_rad, bodies))
             return max(turning_s, ballistics.reach_s(way_m) + _MARGIN_S) - time_s
 
         if not (self._left_s > _STEP_S and late_s(self._left_s) < _KEPT_S):
@@ -83,20 +82,21 @@ class Interception:
             self._left_s = next((time_s for time_s in steps if late_s(time_s) <= 0.0), 0.0)
         if not self._left_s:
             return None
-        return Stand(_mouth_at(ball, self._left_s, way_rad), heading_rad, self._left_s)
+        return Stand(_mouth_at(ball, self._left_s, way_rad, bodies), heading_rad, self._left_s)
 
 
-def _mouth_at(ball: Ball, time_s: float, way_rad: float) -> Point:
+def _mouth_at(ball: Ball, time_s: float, way_rad: float, bodies: Bodies) -> Point:
     """Returns the place of a robot that has the ball in its mouth at a time, ahead of the ball."""
-    return ahead(ballistics.ball_after(ball, time_s), way_rad, _CONTACT_M)
+    return ahead(ballistics.ball_after(ball, time_s, bodies), way_rad, bodies.held_ball_m)
 
 
-def _beside(ball: Ball, place: Point, way_rad: float, heading_rad: float) -> Stand | None:
+def _beside(view: View, way_rad: float, heading_rad: float) -> Stand | None:
     """Returns the nearest place on the ball's way if the robot nearly stands there and the ball is yet to come."""
+    ball, place, contact_m = view.ball, view.own.place, view.bodies.held_ball_m
     to_x_m, to_y_m = place.x_m - ball.place.x_m, place.y_m - ball.place.y_m
     along_m = to_x_m * math.cos(way_rad) + to_y_m * math.sin(way_rad)
     aside_m = abs(to_y_m * math.cos(way_rad) - to_x_m * math.sin(way_rad))
-    time_s = (along_m - _CONTACT_M) / ball.speed_m_s
-    if along_m < _CONTACT_M or aside_m > _NEAR_LINE_M or ballistics.reach_s(aside_m) > time_s:
+    time_s = (along_m - contact_m) / ball.speed_m_s
+    if along_m < contact_m or aside_m > _NEAR_LINE_M or ballistics.reach_s(aside_m) > time_s:
         return None
     return Stand(ahead(ball.place, way_rad, along_m), heading_rad, time_s)

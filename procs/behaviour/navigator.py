@@ -6,15 +6,15 @@ from fwk import Clock, Component, Config, Reads, Writes
 from lcmtypes.robot import kicker_state_t, motor_command_t, odometry_t
 from lcmtypes.soccer import drive_target_t, navigator_state_t, world_model_t
 from procs.behaviour import motion, obstacles
+from procs.behaviour.bodies import Bodies
 from procs.behaviour.identity import number_of_player
 from procs.behaviour.motion import STANDSTILL, Limits, Pose, Velocity
-from procs.behaviour.obstacles import APART_M
 from procs.behaviour.path import Way, find_way
 from procs.behaviour.velocity_obstacles import safe_velocity
-from procs.model.ball import BALL
+from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import clamp, plausible, wrap_rad
-from procs.model.robot import PLAYERS, ROBOT, Players
+from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 
 _FORWARD = 0.8  # cosine of the largest angle between a change of velocity towards the ball and the heading
 
@@ -28,6 +28,10 @@ class NavigatorConfig(Config):
     """Measures of the field."""
     players: Players = dict(PLAYERS)
     """Team and number of each robot."""
+    robot: RobotModel = ROBOT
+    """Geometry of all robots."""
+    ball: BallModel = BALL
+    """Size and friction of the ball."""
     target_timeout_s: float = 0.5
     """The robot stops when its target or its world model is older."""
     near_m: float = 0.08
@@ -59,6 +63,10 @@ class Navigator(Component):
         self._before = STANDSTILL  # commanded, world frame
         self._direction_rad: float | None = None
         self._blind = False  # the commanded velocity is in the robot frame
+        self.config_changed()
+
+    def config_changed(self) -> None:
+        self._bodies = Bodies.of(self.config.robot, self.config.ball)
 
     def loop(self) -> None:
         target, model, state = self.drive_target.value, self.world_model.value, self.navigator_state.value
@@ -107,8 +115,8 @@ class Navigator(Component):
     def _drive(self, target: drive_target_t, model: world_model_t) -> None:
         config, state = self.config, self.navigator_state.value
         pose = self._pose(model)
-        place = obstacles.reachable(Point(target.x_m, target.y_m), config.field)
-        around = obstacles.discs(model, config.field, target.avoid_robots, target.avoid_ball)
+        place = obstacles.reachable(Point(target.x_m, target.y_m), config.field, self._bodies)
+        around = obstacles.discs(model, config.field, self._bodies, target.avoid_robots, target.avoid_ball)
         way = find_way(pose.place, place, around, self._direction_rad, self._inside)
         self._direction_rad = way.direction_rad
         turn_rad = wrap_rad(target.heading_rad - pose.heading_rad)
@@ -122,16 +130,16 @@ class Navigator(Component):
         self._command(wanted, pose.heading_rad)
 
     def _inside(self, place: Point) -> bool:
-        return obstacles.inside_walls(place, self.config.field)
+        return obstacles.inside_walls(place, self.config.field, self._bodies)
 
     def _give_way(self, wanted: Velocity, place: Point, model: world_model_t) -> Velocity:
         players = self.config.players
         number = number_of_player(self._robot, players)
         movers = obstacles.movers(model, self.config.limits.latency_s, number, players)
         now_m_s = Point(self._before.vx_m_s, self._before.vy_m_s)
-        velocity = safe_velocity(
-            Point(wanted.vx_m_s, wanted.vy_m_s), now_m_s, place, movers, APART_M, self.config.limits.acceleration_m_s2
-        )
+        wanted_m_s, apart_m = Point(wanted.vx_m_s, wanted.vy_m_s), obstacles.apart_m(self._bodies)
+        change_m_s2 = self.config.limits.acceleration_m_s2
+        velocity = safe_velocity(wanted_m_s, now_m_s, place, movers, apart_m, change_m_s2)
         return Velocity(*velocity, wanted.omega_rad_s)
 
     def _pose(self, model: world_model_t) -> Pose:
@@ -168,7 +176,7 @@ class Navigator(Component):
         command = self.motor_command.value
         command.vx_m_s, command.vy_m_s = motion.turned(self._before.vx_m_s, self._before.vy_m_s, -middle_rad)
         if held:
-            command.vy_m_s -= limits.ball_pivot * self._before.omega_rad_s * ROBOT.held_ball_m(BALL)
+            command.vy_m_s -= limits.ball_pivot * self._before.omega_rad_s * self._bodies.held_ball_m
         command.omega_rad_s = self._before.omega_rad_s
         command.enabled = True
         self.motor_command.write()

@@ -4,56 +4,61 @@ import math
 from collections.abc import Iterable, Mapping
 
 from lcmtypes.soccer import mate_estimate_t, robot_estimate_t, world_model_t
+from procs.behaviour.bodies import Bodies
 from procs.behaviour.identity import number_of_mate
 from procs.behaviour.path import Disc
 from procs.behaviour.velocity_obstacles import Mover
-from procs.model.ball import BALL
 from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import clamp, plausible
-from procs.model.robot import PLAYERS, ROBOT, Player
+from procs.model.robot import PLAYERS, Player
 
 _Estimate = mate_estimate_t | robot_estimate_t
-_ROBOT_M = ROBOT.radius_m
-_BALL_M = BALL.radius_m
 _MARGIN_M = 0.12
-APART_M = 2 * _ROBOT_M + 0.06
-"""Distance of the middles of two robots that nearly touch."""
+_GAP_M = 0.06  # between two robots that nearly touch
 _BALL_MARGIN_M = 0.1
 _FORESIGHT_S = 0.8
 _MEETING_M_S = 3.0  # two robots that drive towards each other get closer about so fast
 _NEAR_M = 6.0  # further obstacles do not matter yet
 _PASSING_M = 0.1  # room beside a robot that is passed ...
 _UNSURE_M = 0.15  # ... and at most so much more for the deviation of its place
+_OFF_WALL_M = 0.1  # room between a robot at its target and the wall
 _AT_WALL_M = 0.05  # a robot at the wall may be believed so far inside it
 _DRIVES_M_S = 0.3  # a slower mate plays the ball or stays at its place, and does not give way
 
 
-def discs(model: world_model_t, field: Field, avoid_robots: bool, avoid_ball: bool) -> list[Disc]:
+def apart_m(bodies: Bodies) -> float:
+    """Returns the distance of the middles of two robots that nearly touch."""
+    return 2 * bodies.robot_radius_m + _GAP_M
+
+
+def discs(model: world_model_t, field: Field, bodies: Bodies, avoid_robots: bool, avoid_ball: bool) -> list[Disc]:
     """Returns discs around near obstacles, at their positions in a moment."""
-    own = Point(model.x_m, model.y_m)
+    own, robot_m = Point(model.x_m, model.y_m), bodies.robot_radius_m
     found = [
-        Disc(post, _ROBOT_M + field.post_diameter_m / 2 + 0.03) for side in SIDES for post in field.goal_posts(side)
+        Disc(post, robot_m + field.post_diameter_m / 2 + 0.03) for side in SIDES for post in field.goal_posts(side)
     ]
     if avoid_robots:
-        found += _robots(model.mates, own) + _robots(model.opponents, own)
+        found += _robots(model.mates, own, robot_m) + _robots(model.opponents, own, robot_m)
     if avoid_ball and model.ball.known and plausible(model.ball.x_m, model.ball.y_m):
         ball = Point(model.ball.x_m, model.ball.y_m)
-        found.append(Disc(ball, _ROBOT_M + _BALL_M + _BALL_MARGIN_M))
+        found.append(Disc(ball, robot_m + bodies.ball_radius_m + _BALL_MARGIN_M))
     return [disc for disc in found if math.dist(disc.middle, own) < _NEAR_M]
 
 
-def reachable(place: Point, field: Field) -> Point:
+def reachable(place: Point, field: Field, bodies: Bodies) -> Point:
     """Returns the place, or the nearest one that is neither in a goal nor at the wall."""
-    x_m = clamp(place.x_m, -field.half_length_m - field.border_m + 0.35, field.half_length_m + field.border_m - 0.35)
-    y_m = clamp(place.y_m, -field.half_width_m - field.border_m + 0.35, field.half_width_m + field.border_m - 0.35)
+    off_m = bodies.robot_radius_m + _OFF_WALL_M
+    x_m = clamp(place.x_m, -field.half_length_m - field.border_m + off_m, field.half_length_m + field.border_m - off_m)
+    y_m = clamp(place.y_m, -field.half_width_m - field.border_m + off_m, field.half_width_m + field.border_m - off_m)
     if abs(y_m) < field.goal_width_m / 2 + 0.5:
         x_m = clamp(x_m, -field.half_length_m + 0.1, field.half_length_m - 0.1)
     return Point(x_m, y_m)
 
 
-def inside_walls(place: Point, field: Field) -> bool:
+def inside_walls(place: Point, field: Field, bodies: Bodies) -> bool:
     """Returns whether a robot's middle can be at the place, as the wall around the field allows."""
-    x_m, y_m = field.half_length_m + field.border_m - _ROBOT_M, field.half_width_m + field.border_m - _ROBOT_M
+    robot_m = bodies.robot_radius_m
+    x_m, y_m = field.half_length_m + field.border_m - robot_m, field.half_width_m + field.border_m - robot_m
     return abs(place.x_m) < x_m + _AT_WALL_M and abs(place.y_m) < y_m + _AT_WALL_M
 
 
@@ -86,12 +91,12 @@ def _deviation_m(robot: _Estimate) -> float:
     return min(_UNSURE_M, math.sqrt(max(0.0, xx_m2, yy_m2)))
 
 
-def _robots(estimates: Iterable[_Estimate], own: Point) -> list[Disc]:
+def _robots(estimates: Iterable[_Estimate], own: Point, robot_m: float) -> list[Disc]:
     found = []
     for robot in estimates:
         if not _sane(robot):
             continue
         ahead_s = min(_FORESIGHT_S, math.dist(own, (robot.x_m, robot.y_m)) / _MEETING_M_S)
         middle = Point(robot.x_m + robot.vx_m_s * ahead_s, robot.y_m + robot.vy_m_s * ahead_s)
-        found.append(Disc(middle, 2 * _ROBOT_M + _MARGIN_M, 2 * _ROBOT_M))
+        found.append(Disc(middle, 2 * robot_m + _MARGIN_M, 2 * robot_m))
     return found

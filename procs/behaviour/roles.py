@@ -49,7 +49,7 @@ def assign(view: View, field: Field) -> dict[str, Job]:
         team.remove(keeper)
     if not team:
         return jobs
-    course = ballistics.Course(view.ball)
+    course = ballistics.Course(view.ball, view.bodies)
     times_s = {robot.name: _time_to_ball_s(robot, view.ball, course) for robot in team}
     free = [robot for robot in team if robot.role != PASSER] or team
     attacker = receiver(team, view) or min(

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 from procs.behaviour import aim, formation
+from procs.behaviour.bodies import Bodies
 from procs.behaviour.game import Game
 from procs.behaviour.view import Robot
 from procs.model.field import Field, Point
@@ -81,7 +82,7 @@ BOOK: Mapping[State, Sequence[Variant]] = {
 """Variants of each set piece but the penalty, which is shot."""
 
 
-def choose(game: Game, rivals: Sequence[Robot], field: Field) -> tuple[str, Point] | None:
+def choose(game: Game, rivals: Sequence[Robot], field: Field, bodies: Bodies) -> tuple[str, Point] | None:
     """Returns the variant of the own set piece and the receiver's place; None for a set piece without a receiver.
 
     It is the first in turn whose way is free; if all are blocked, the one with the most room.
@@ -91,7 +92,7 @@ def choose(game: Game, rivals: Sequence[Robot], field: Field) -> tuple[str, Poin
         return None
     turn = game.number % len(variants)
     found = [(each.name, receiver_place(each, game, field)) for each in (*variants[turn:], *variants[:turn])]
-    return max(found, key=lambda each: min(aim.LANE_RAD, _room_rad(game.spot, each[1], rivals)))
+    return max(found, key=lambda each: min(aim.LANE_RAD, _room_rad(game.spot, each[1], rivals, bodies)))
 
 
 def receiver_place(variant: Variant, game: Game, field: Field) -> Point:
@@ -99,9 +100,9 @@ def receiver_place(variant: Variant, game: Game, field: Field) -> Point:
     return formation.helper_place(variant.place(game, field), game, field)
 
 
-def _room_rad(spot: Point, place: Point, rivals: Sequence[Robot]) -> float:
+def _room_rad(spot: Point, place: Point, rivals: Sequence[Robot], bodies: Bodies) -> float:
     crowded = any(math.dist(place, rival.place) < _FREE_M for rival in rivals)
-    return -math.pi if crowded else aim.lane_rad(spot, place, rivals)
+    return -math.pi if crowded else aim.lane_rad(spot, place, rivals, bodies)
 
 
 def _away(game: Game) -> float:

@@ -11,14 +11,16 @@ from lcmtypes.soccer import (
     skill_status_t,
     world_model_t,
 )
+from procs.behaviour.bodies import Bodies
 from procs.behaviour.game import Whose, frame_of, game_of
 from procs.behaviour.identity import team_of_player
 from procs.behaviour.skills.book import SKILLS, Machine
 from procs.behaviour.skills.skill import Blind, Drive, Obstacle, Scene, Sight, Status, Step
 from procs.behaviour.view import view_of
+from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import plausible
-from procs.model.robot import PLAYERS, Players
+from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.referee.ends import Team
 
 _KICK_TIMEOUT_S = 0.15
@@ -34,6 +36,10 @@ class SkillerConfig(Config):
     """Measures of the field."""
     players: Players = dict(PLAYERS)
     """Team and number of each robot."""
+    robot: RobotModel = ROBOT
+    """Geometry of all robots."""
+    ball: BallModel = BALL
+    """Size and friction of the ball."""
 
 
 class Skiller(Component):
@@ -66,6 +72,10 @@ class Skiller(Component):
         self._machine = Machine()
         self._request: Request[skill_command_t] | None = None
         self._kick: Call | None = None
+        self.config_changed()
+
+    def config_changed(self) -> None:
+        self._bodies = Bodies.of(self.config.robot, self.config.ball)
 
     @property
     def _team(self) -> Team:
@@ -107,7 +117,8 @@ class Skiller(Component):
         command = self._request.value if self._request else skill_command_t()
         kicker = self.kicker_state.value
         game = game_of(self.game_state.value, self._team, self._frame)
-        view = view_of(self.world_model.value, self._robot, "", self._frame, players=self.config.players)
+        model, players = self.world_model.value, self.config.players
+        view = view_of(model, self._robot, "", self._frame, players=players, bodies=self._bodies)
         return Scene(
             view,
             self._frame.point(command.x_m, command.y_m),

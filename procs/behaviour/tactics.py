@@ -150,7 +150,7 @@ class Tactics:
             mates = [mate for mate in mates if mate.name == self._receiver] or mates
         planned = self._plan(view, game)
         near = [mate for mate in mates if mate.role == SUPPORTER] if planned else []
-        best = aim.best_pass(taker, near or mates, view.opponents, math.inf, self._receiver)
+        best = aim.best_pass(taker, near or mates, view.opponents, view.bodies, math.inf, self._receiver)
         target = best.place if best else self.field.goal_centre(1.0)
         self._receiver = best.receiver if best else ""
         self.passing.announce(self._receiver, planned[1] if planned and near else target)
@@ -171,11 +171,14 @@ class Tactics:
     def _plan(self, view: View, game: Game) -> tuple[str, Point] | None:
         """Returns the variant of the own set piece and the receiver's place, chosen while the game is stopped."""
         if game.number != self._planned_for or (game.stopped and self._blocked(view, game)):
-            self._planned_for, self._planned = game.number, set_pieces.choose(game, view.opponents, self.field)
+            self._planned_for = game.number
+            self._planned = set_pieces.choose(game, view.opponents, self.field, view.bodies)
         return self._planned
 
     def _blocked(self, view: View, game: Game) -> bool:
-        return self._planned is None or aim.lane_rad(game.spot, self._planned[1], view.opponents) < 0.0
+        if self._planned is None:
+            return True
+        return aim.lane_rad(game.spot, self._planned[1], view.opponents, view.bodies) < 0.0
 
     def _helper_place(self, view: View, game: Game, job: Job) -> Point:
         """Returns the place of a robot that does not take the set piece; the receiver's is told by the taker."""
@@ -187,7 +190,7 @@ class Tactics:
             return formation.helper_place(told[0], game, self.field)
         if job.role != SUPPORTER:
             return place
-        planned = set_pieces.choose(game, (), self.field)
+        planned = set_pieces.choose(game, (), self.field, view.bodies)
         return planned[1] if planned else place
 
     def _play_ball(self, view: View) -> Order:
@@ -249,7 +252,7 @@ def keeper_takes(view: View, field: Field) -> bool:
     if not keepers:
         return False
     others = [*view.opponents, *(robot for robot in (view.own, *view.mates) if robot.role != GOALKEEPER)]
-    course = ballistics.Course(ball)
+    course = ballistics.Course(ball, view.bodies)
     keeper_s = course.meet(keepers[0].place, keepers[0].velocity_m_s).time_s
     return all(keeper_s < course.meet(other.place, other.velocity_m_s).time_s + 0.3 for other in others)
 

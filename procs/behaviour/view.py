@@ -9,6 +9,7 @@ from collections.abc import Container, Iterable, Mapping
 from typing import NamedTuple
 
 from lcmtypes.soccer import ball_estimate_t, mate_estimate_t, pass_agreement_t, robot_estimate_t, world_model_t
+from procs.behaviour.bodies import USUAL, Bodies
 from procs.behaviour.identity import number_of_mate, number_of_player
 from procs.model.field import Point
 from procs.model.geometry import plausible, wrap_rad
@@ -82,6 +83,8 @@ class View(NamedTuple):
     ball: Ball
     mates: tuple[Robot, ...] = ()
     opponents: tuple[Robot, ...] = ()
+    bodies: Bodies = USUAL
+    """Sizes of the robots and the ball, and the ball's friction."""
 
     @property
     def others(self) -> tuple[Robot, ...]:
@@ -101,6 +104,7 @@ def view_of(
     mate_timeout_s: float = 2.0,
     agreement: Agreement = _SILENT,
     players: Mapping[str, Player] = PLAYERS,
+    bodies: Bodies = USUAL,
 ) -> View:
     """Turns the world model into the attack frame; `role` and `agreement` are the robot's own words.
 
@@ -121,6 +125,7 @@ def view_of(
             if mate.age_s <= mate_timeout_s and _sane(mate) and plausible(mate.heading_rad)
         ),
         tuple(_opponent(other, frame) for other in model.opponents if _sane(other)),
+        bodies,
     )
 
 

@@ -34,6 +34,3 @@ class BallModel(BaseModel):
 BALL = BallModel()
 """The usual ball."""
 RADIUS_M = BALL.radius_m
-SLIDING_M_S2 = BALL.sliding_m_s2
-ROLLING_M_S2 = BALL.rolling_m_s2
-ROLLING_SHARE = BALL.rolling_share

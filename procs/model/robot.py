@@ -48,7 +48,6 @@ class RobotModel(BaseModel):
 
 ROBOT = RobotModel()
 """The usual robot."""
-RADIUS_M = ROBOT.radius_m
 
 
 class Player(BaseModel):

@@ -12,15 +12,15 @@ from fwk.web import Newest, Scene
 from lcmtypes.core import frame_t
 from lcmtypes.soccer import ball_candidate_t, ball_percept_t, line_points_t, obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
-from procs.model.ball import RADIUS_M
+from procs.model.ball import BALL
 from procs.model.robot import TEAM_NUMBERS
 from procs.vision.calibration import MirrorConfig
 from procs.vision.stereo_rig import StereoRig
 
 SEES = ("ball_percept", "obstacle_percepts", "line_points", "stereo_obstacles")
 """Channels beside a camera with the detections in its images."""
-CALIBRATION = ("mirror", "rig")
-"""Groups of settings with the calibration of the mirror and of the stereo pair."""
+CALIBRATION = ("mirror", "rig", "ball")
+"""Groups of settings with the calibration of the mirror and of the stereo pair, and the size of the ball."""
 _BALL = "#ffee58"
 _OBSTACLE = "#ff4081"
 _LINE = "#00e5ff"
@@ -79,26 +79,32 @@ def draw_sight(camera: str, newest: Newest, scene: Scene) -> None:
     lens = _MirrorLens(newest.settings(f"{space}/*", "mirror"), frame.width_px, frame.height_px)
     _draw_lines(newest(f"{space}/line_points"), lens, scene)
     _draw_obstacles(newest(f"{space}/obstacle_percepts"), lens, scene)
-    _draw_ball(newest(f"{space}/ball_percept"), lens, scene)
+    ball_radius_m = newest.settings(f"{space}/*", "ball").get("radius_m", BALL.radius_m)
+    _draw_ball(newest(f"{space}/ball_percept"), ball_radius_m, lens, scene)
 
 
-def _draw_ball(ball: ball_percept_t | None, lens: _MirrorLens, scene: Scene) -> None:
+def _draw_ball(ball: ball_percept_t | None, radius_m: float, lens: _MirrorLens, scene: Scene) -> None:
     scene.layer("ball")
     if ball is None or not ball.visible:
         return
     words = f"ball {math.hypot(ball.x_m, ball.y_m):.1f} m, {ball.confidence:.0%}"
     if ball.z_m > 0.0:
         words += f", {ball.z_m:.1f} m high"
-    _draw_ring(ball, lens, scene, 1.5, words)
+    _draw_ring(ball, radius_m, lens, scene, 1.5, words)
     for other in ball.others:
-        _draw_ring(other, lens, scene, 0.7, f"{other.confidence:.0%}")
+        _draw_ring(other, radius_m, lens, scene, 0.7, f"{other.confidence:.0%}")
 
 
 def _draw_ring(
-    ball: ball_percept_t | ball_candidate_t, lens: _MirrorLens, scene: Scene, width_m: float, words: str
+    ball: ball_percept_t | ball_candidate_t,
+    radius_m: float,
+    lens: _MirrorLens,
+    scene: Scene,
+    width_m: float,
+    words: str,
 ) -> None:
     """Draws the outline of what may be the ball, and words above it."""
-    column, row, radius_px = lens.mirror.sphere((ball.x_m, ball.y_m, ball.z_m + RADIUS_M), RADIUS_M)
+    column, row, radius_px = lens.mirror.sphere((ball.x_m, ball.y_m, ball.z_m + radius_m), radius_m)
     x_px, y_px = column + lens.shift_px[0], row + lens.shift_px[1]
     scene.circle(x_px, y_px, radius_px + 2.0, stroke=_BALL, width_m=width_m)
     scene.text(x_px, y_px - radius_px - 10.0, words, _BALL, 10.0)

@@ -44,6 +44,7 @@ def drawn(
     obstacles: obstacle_percepts_t,
     lines: line_points_t,
     scale: int = 2,
+    ball_radius_m: float = RADIUS_M,
 ) -> Picture:
     """Returns the picture of a camera (size, size, 3), `scale` times larger, with what was found in it.
 
@@ -59,7 +60,7 @@ def drawn(
         foot = mirror.project(rim * each.radius_m + (each.x_m, each.y_m, 0.0))
         cv2.polylines(picture, [_fine(foot, scale)], True, OBSTACLE, scale, cv2.LINE_AA, _SHIFT)
     if ball.visible:
-        *middle, radius_px = mirror.sphere((ball.x_m, ball.y_m, ball.z_m + RADIUS_M), RADIUS_M)
+        *middle, radius_px = mirror.sphere((ball.x_m, ball.y_m, ball.z_m + ball_radius_m), ball_radius_m)
         (place,) = _fine(np.array([middle]), scale)
         radius = round((radius_px + 2.0) * scale * (1 << _SHIFT))
         cv2.circle(picture, place.tolist(), radius, BALL, scale, cv2.LINE_AA, _SHIFT)
@@ -72,7 +73,7 @@ def _fine(pixels: Floats, scale: int) -> np.ndarray[tuple[int, int], np.dtype[np
     return np.round(larger.clip(-4096, 4096) * (1 << _SHIFT)).astype(np.int32)
 
 
-def sight_in(system: MemorySystem, robot: str, mirror: Mirror) -> Picture | None:
+def sight_in(system: MemorySystem, robot: str, mirror: Mirror, ball_radius_m: float = RADIUS_M) -> Picture | None:
     """Returns the newest picture of a robot's camera with the findings of its tick; None if there is none.
 
     The system needs a component `world/pictures` that publishes every picture.
@@ -85,9 +86,8 @@ def sight_in(system: MemorySystem, robot: str, mirror: Mirror) -> Picture | None
         tick = seen.header.tick
         ball = _of_tick(system.sent[f"{robot}/ball_percept"], ball_percept_t, tick)
         obstacles = _of_tick(system.sent[f"{robot}/obstacle_percepts"], obstacle_percepts_t, tick)
-        return drawn(
-            pixels, mirror, ball, obstacles, _of_tick(system.sent[f"{robot}/line_points"], line_points_t, tick)
-        )
+        lines = _of_tick(system.sent[f"{robot}/line_points"], line_points_t, tick)
+        return drawn(pixels, mirror, ball, obstacles, lines, ball_radius_m=ball_radius_m)
     return None
 
 
@@ -110,13 +110,14 @@ def main() -> None:
         file = Path(folder) / "sight.yaml"
         file.write_text(_LAUNCH.format(file=asked.launch, config=_FINE))
         try:
-            mirror = MirrorConfig(**settings_in(str(file), f"{asked.robot}/camera")["mirror"]).mirror()
+            settings = settings_in(str(file), f"{asked.robot}/camera")
         except KeyError as error:
             raise SystemExit(f"{asked.launch}: no camera of {asked.robot}") from error
         system = system_of(str(file), seed=asked.seed)
         while system.now_us < asked.time * 1e6:
             system.tick()
-        picture = sight_in(system, asked.robot, mirror)
+        mirror = MirrorConfig(**settings["mirror"]).mirror()
+        picture = sight_in(system, asked.robot, mirror, settings["ball"]["radius_m"])
     if picture is None:
         raise SystemExit(f"no picture of {asked.robot}/image")
     cv2.imwrite(str(asked.file), picture)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from fwk.web import Newest, OpenPage, Page, RunAccess, Scene, View
 from lcmtypes.soccer import ground_truth_t, pose_t, true_robot_t, world_model_t
-from procs.model.ball import RADIUS_M as BALL_RADIUS_M
+from procs.model.ball import BALL
 from procs.model.field import SIDES, Field, field_of
 from procs.model.robot import CYAN, MAGENTA, ROBOT, number_in, team_in
 from procs.view.camera_sight import CALIBRATION, SEES, draw_sight
@@ -20,6 +20,7 @@ _SURROUND = "#245c30"
 _WHITE = "#f0f4f0"
 _ARC_STEPS = 24
 _NOSE_M = 0.3
+_RING_M = 0.03  # between a robot and the ring where it believes to be
 
 
 class MatchView(View):
@@ -30,6 +31,7 @@ class MatchView(View):
     channels = (TRUTH, MEASURES, GAME_STATE, *(f"*/{name}" for name in MIND))
     sees = SEES
     sight_settings = CALIBRATION
+    settings = ("world/*.robot", "world/*.ball")
 
     def draw(self, newest: Newest, scene: Scene) -> None:
         """Draws the newest messages."""
@@ -43,11 +45,14 @@ class MatchView(View):
         scene.ground(_draw_ground, field)
         if truth is None:
             return
+        robot_radius_m = newest.settings("world/*", "robot").get("radius_m", ROBOT.radius_m)
         for robot in truth.robots:
-            _draw_mind(scene, newest, robot)
+            _draw_mind(scene, newest, robot, robot_radius_m)
         for robot in truth.robots:
-            _draw_robot(scene, robot)
-        _draw_ball(scene, truth)  # above what robots believe of it
+            _draw_robot(scene, robot, robot_radius_m)
+        _draw_ball(
+            scene, truth, newest.settings("world/*", "ball").get("radius_m", BALL.radius_m)
+        )  # above what robots believe of it
 
     def sight(self, camera: str, newest: Newest, scene: Scene) -> None:
         """Draws the detections of a robot over an image of its camera."""
@@ -128,10 +133,9 @@ def _draw_ground(scene: Scene, field: Field) -> None:
         scene.line([(front_m, -half_m), (back_m, -half_m), (back_m, half_m), (front_m, half_m)], _WHITE, 0.08)
 
 
-def _draw_robot(scene: Scene, robot: true_robot_t) -> None:
+def _draw_robot(scene: Scene, robot: true_robot_t, radius_m: float) -> None:
     colour = COLOURS.get(team_in(robot), _UNKNOWN)
     scene.layer("truth", of=robot.name)
-    radius_m = ROBOT.radius_m
     scene.circle(
         *(robot.x_m, robot.y_m, radius_m, colour, "#202226", 0.06),
         pick=robot.name,
@@ -143,13 +147,13 @@ def _draw_robot(scene: Scene, robot: true_robot_t) -> None:
     scene.text(robot.x_m, robot.y_m, str(number_in(robot) or "?"), "#101214", 0.22)
 
 
-def _draw_ball(scene: Scene, truth: ground_truth_t) -> None:
+def _draw_ball(scene: Scene, truth: ground_truth_t, radius_m: float) -> None:
     scene.layer("truth", of="ball")
-    place = (truth.ball_x_m, truth.ball_y_m, BALL_RADIUS_M)
+    place = (truth.ball_x_m, truth.ball_y_m, radius_m)
     scene.circle(*place, "#fac41e", "#82591a", 0.03, pick="ball", drag="ball", trail="ball")
 
 
-def _draw_mind(scene: Scene, newest: Newest, robot: true_robot_t) -> None:
+def _draw_mind(scene: Scene, newest: Newest, robot: true_robot_t, radius_m: float) -> None:
     """Draws the positions of robot and ball in the belief of the robot, its target, role and skill."""
     colour = COLOURS.get(team_in(robot), _UNKNOWN)
     model: world_model_t | None = newest(f"{robot.name}/world_model")
@@ -157,7 +161,7 @@ def _draw_mind(scene: Scene, newest: Newest, robot: true_robot_t) -> None:
     if model is not None:
         scene.layer("beliefs", of=robot.name)
         if model.localized:
-            scene.circle(model.x_m, model.y_m, 0.28, stroke=colour, width_m=0.03)
+            scene.circle(model.x_m, model.y_m, radius_m + _RING_M, stroke=colour, width_m=0.03)
             scene.line([(robot.x_m, robot.y_m), (model.x_m, model.y_m)], colour, 0.03)
             if pose is not None:
                 scene.ellipse(pose.x_m, pose.y_m, pose.covariance, colour)

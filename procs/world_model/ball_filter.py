@@ -14,18 +14,17 @@ import math
 
 import numpy as np
 
-from procs.model.ball import ROLLING_SHARE
+from procs.model.ball import BallModel
 from procs.model.frames import Floats
 from procs.world_model.ball_modes import MODES, STATES, Mode, noise, passes
 from procs.world_model.batch import corrected, innovation
-from procs.world_model.carpet_friction import rubbed
+from procs.world_model.carpet_friction import Friction, rubbed
 
 _FOUR = np.arange(4)
 _MOVING = (Mode.FREE, Mode.HANDLED, Mode.HIT)
 _PLACE, _VELOCITY, _SETTLED, _CARPET = slice(0, 2), slice(2, 4), slice(4, 6), 6
 _SLIP = np.array([7 * row + column for row, column in ((2, 2), (3, 3), (4, 4), (5, 5), (2, 4), (3, 5))])
 """Places in a flat covariance of the parts that the variance of the slip, velocity minus settled velocity, has."""
-_SPUN_SHARE = 1.0 - ROLLING_SHARE  # of the velocity at which the ball would roll with its spin, in the settled one
 _STILL = np.tile(np.eye(STATES), (MODES, 1, 1))
 """Derivatives of states that stay, but for the velocities of a resting ball."""
 _STILL[Mode.RESTS, 2:6] = 0.0
@@ -47,8 +46,11 @@ _FIRST = np.array((0.3, 0.45, 0.2, 0.05))
 class BallFilter:
     """Mixture of the models; `state` and `covariance` are those of the mixture."""
 
-    def __init__(self, position_m: Floats, covariance_m2: Floats) -> None:
+    def __init__(self, position_m: Floats, covariance_m2: Floats, ball: BallModel) -> None:
         """Starts from one sighting (2) with its covariance (2, 2); the velocity is unknown."""
+        self._sliding_m_s2 = ball.sliding_m_s2
+        self._rolling_share = ball.rolling_share  # of the velocity, in the settled one ...
+        self._spun_share = 1.0 - self._rolling_share  # ... and of the one at which the ball would roll with its spin
         # Copies share arrays: methods replace them, or change those that they have just made.
         self._x = np.zeros((MODES, STATES))
         self._x[:, _PLACE] = position_m
@@ -121,16 +123,17 @@ class BallFilter:
         self._mix(passes(duration_s, round(contact * _LEVELS) / _LEVELS, slow, grounded_s <= 0.0))
         motion = self._rub(duration_s, grounded_s, rolling_m_s2)
         self._mixture = None
-        self._p = motion @ self._p @ motion.transpose(0, 2, 1) + noise(duration_s)
+        self._p = motion @ self._p @ motion.transpose(0, 2, 1) + noise(duration_s, self._rolling_share)
 
     def _rub(self, duration_s: float, grounded_s: float, rolling_m_s2: float) -> Floats:
         """Lets the ball move and the carpet act on it; returns the derivatives (modes, 7, 7) of the new states."""
+        friction = Friction(self._sliding_m_s2, rolling_m_s2, self._rolling_share)
         resting, *moving = self._x.tolist()
         states, rows = [*resting[:2], 0.0, 0.0, 0.0, 0.0, resting[_CARPET]], []
         slips = self._p.reshape(MODES, -1)[1:, _SLIP].tolist()
         for mode, state, (vx_vx, vy_vy, ux_ux, uy_uy, vx_ux, vy_uy) in zip(_MOVING, moving, slips, strict=True):
             slip_m2_s2 = vx_vx + vy_vy + ux_ux + uy_uy - 2.0 * (vx_ux + vy_uy)
-            moved, derivatives = rubbed(mode, state, slip_m2_s2 / 2.0, duration_s, grounded_s, rolling_m_s2)
+            moved, derivatives = rubbed(mode, state, slip_m2_s2 / 2.0, duration_s, grounded_s, friction)
             states += moved
             rows += derivatives
         self._x = np.array(states).reshape(MODES, STATES)
@@ -157,7 +160,7 @@ class BallFilter:
             self._x[:, _PLACE] = np.clip(self._x[:, _PLACE], -limits_m, limits_m)
             changes_m_s = np.where(beyond, (-bounce - 1.0) * self._x[:, _VELOCITY], 0.0)
             self._x[:, _VELOCITY] += changes_m_s
-            self._x[:, _SETTLED] += ROLLING_SHARE * changes_m_s
+            self._x[:, _SETTLED] += self._rolling_share * changes_m_s
             self._mixture = None
 
     def see(self, position_m: Floats, covariance_m2: Floats) -> bool:
@@ -211,7 +214,7 @@ class BallFilter:
         What the track tells is weighed against a ball that rolls at a velocity (2); `least_m_s` is the least deviation.
         """
         mean, covariance = self._moments()
-        of_velocity, of_settled = -ROLLING_SHARE / _SPUN_SHARE, 1.0 / _SPUN_SHARE
+        of_velocity, of_settled = -self._rolling_share / self._spun_share, 1.0 / self._spun_share
         told_m_s = of_velocity * mean[_VELOCITY] + of_settled * mean[_SETTLED]
         told_m2_s2 = (
             of_velocity**2 * np.trace(covariance[_VELOCITY, _VELOCITY])
@@ -226,10 +229,10 @@ class BallFilter:
         factor, variance = self.carpet
         to_all = np.zeros((STATES, 4))
         to_all[_FOUR, _FOUR] = 1.0
-        to_all[4, 2] = to_all[5, 3] = ROLLING_SHARE
+        to_all[4, 2] = to_all[5, 3] = self._rolling_share
         x, p = to_all @ state, to_all @ covariance @ to_all.T
-        x[_SETTLED] += _SPUN_SHARE * spin_m_s
-        p[_SETTLED, _SETTLED] += _SPUN_SHARE**2 * spin_m2_s2
+        x[_SETTLED] += self._spun_share * spin_m_s
+        p[_SETTLED, _SETTLED] += self._spun_share**2 * spin_m2_s2
         x[_CARPET], p[_CARPET, _CARPET] = factor, variance
         self._x, self._p = np.tile(x, (MODES, 1)), np.tile(p, (MODES, 1, 1))
 

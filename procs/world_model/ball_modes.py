@@ -5,7 +5,6 @@ from functools import lru_cache
 
 import numpy as np
 
-from procs.model.ball import ROLLING_SHARE
 from procs.model.frames import Floats
 
 
@@ -74,15 +73,18 @@ def passes(duration_s: float, contact: float, slow: bool, flies: bool) -> Floats
 
 
 @lru_cache(maxsize=32)
-def noise(duration_s: float) -> Floats:
-    """Returns the covariances (modes, 7, 7) that the models' accelerations add in a step; cached."""
+def noise(duration_s: float, rolling_share: float) -> Floats:
+    """Returns the covariances (modes, 7, 7) that the models' accelerations add in a step; cached.
+
+    `rolling_share` is the share of a kick's speed that is left when the ball begins to roll.
+    """
     along = np.array((duration_s**3 / 3, duration_s**2 / 2, duration_s))
     matrices = np.zeros((MODES, STATES, STATES))
     for mode in Mode:
         place, both, velocity = _NOISE_M2_S3[mode] * along
         if mode is Mode.HIT:
             place, both, velocity = _HIT_M_S**2 * np.array((duration_s**2 / 3, duration_s / 2, 1.0))
-        share = ROLLING_SHARE if mode in (Mode.HIT, Mode.HANDLED) else 0.0
+        share = rolling_share if mode in (Mode.HIT, Mode.HANDLED) else 0.0
         spin = _HIT_SPIN_M_S**2 if mode is Mode.HIT else _SPIN_NOISE_M2_S3 * duration_s
         if mode is Mode.RESTS:
             place, both, velocity, spin = _NOISE_M2_S3[mode] * duration_s, 0.0, 1e-4, 1e-4

@@ -130,6 +130,8 @@ class BallTrack:
     """Filter of the ball with the memory that judges sightings; all times in logical microseconds."""
 
     time_us: int
+    ball: BallModel
+    """Friction and bounce of the ball."""
     filter: BallFilter | None = None
     """None while the ball is not known."""
     seen_us: int = _NEVER_US
@@ -146,9 +148,10 @@ class BallTrack:
     def moved(self, time_us: int, step: Step) -> "BallTrack":
         """Returns the track at a later time; this one stays as it is."""
         if self.filter is None or time_us - self.seen_us > step.timeout_us:
-            return BallTrack(time_us, None, self.seen_us, carpet=self._carpet())
+            return BallTrack(time_us, self.ball, None, self.seen_us, carpet=self._carpet())
         doubts = self.doubts and tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= _SECOND_SIGHT_US)
-        made = BallTrack(time_us, self.filter.copy(), self.seen_us, self.confirmed.copy(), doubts, flight=self.flight)
+        ball, confirmed = self.filter.copy(), self.confirmed.copy()
+        made = BallTrack(time_us, self.ball, ball, self.seen_us, confirmed, doubts, flight=self.flight)
         made._advance((time_us - self.time_us) / US_PER_S, step)
         return made
 
@@ -157,12 +160,12 @@ class BallTrack:
         assert self.filter is not None
         grounded_s = duration_s
         if self.flight is not None:
-            self.flight, grounded_s = self.flight.moved(duration_s)
+            self.flight, grounded_s = self.flight.moved(duration_s, self.ball)
         self.filter.predict(duration_s, step.rolling_m_s2, step.contact, grounded_s)
         if step.walls is not None:
             step.walls.contain(self.filter)
 
-    def see(self, sighting: Sighting, rolling_m_s2: float, others: Sequence[Sighting] = ()) -> None:
+    def see(self, sighting: Sighting, others: Sequence[Sighting] = ()) -> None:
         """Takes a sighting that was captured at the time of the track.
 
         Of the `others` in the same frame the first that fits the track counts, if the sighting does not.
@@ -175,7 +178,7 @@ class BallTrack:
             self.confirmed = {}
             self._begin(sighting)
         elif not self._overruled(sighting):
-            self._doubt(sighting, rolling_m_s2)
+            self._doubt(sighting)
 
     def _fits(self, sighting: Sighting) -> bool:
         """Takes a sighting of a known ball; returns False if it does not fit."""
@@ -217,7 +220,7 @@ class BallTrack:
 
     def _new(self, position_m: Floats, covariance_m2: Floats) -> BallFilter:
         """Returns a filter that begins with a sighting, on the carpet that is known."""
-        made, carpet = BallFilter(position_m, covariance_m2), self._carpet()
+        made, carpet = BallFilter(position_m, covariance_m2, self.ball), self._carpet()
         if carpet is not None:
             made.lie_on(carpet)
         return made
@@ -236,7 +239,7 @@ class BallTrack:
         """Returns whether another robot has confirmed the track since then: one robot may be wrong about its place."""
         return any(name != robot and seen_us >= since_us for name, (seen_us, _) in self.confirmed.items())
 
-    def _doubt(self, sighting: Sighting, rolling_m_s2: float) -> None:
+    def _doubt(self, sighting: Sighting) -> None:
         """Keeps a sighting that does not fit; begins a new track from two that fit each other."""
         for exposed_us, other in reversed(self.doubts):
             between_s = (self.time_us - exposed_us) / US_PER_S
@@ -245,7 +248,7 @@ class BallTrack:
             if near and (other.robot != sighting.robot or not self._contradicted(sighting.robot, exposed_us)):
                 self.confirmed = {}
                 self._begin(other)
-                self._advance(between_s, Step(rolling_m_s2))
+                self._advance(between_s, Step(self.ball.rolling_m_s2))
                 self._fits(sighting)
                 self._confirm(sighting)
                 return

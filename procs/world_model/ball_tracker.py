@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from operator import itemgetter
 
+from procs.model.ball import BALL, BallModel
 from procs.model.frames import Floats
 from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
@@ -37,11 +38,13 @@ class _Moment:
 class BallTracker:
     """Track of the ball: `advance` once a tick, then the inputs of the tick."""
 
-    def __init__(self) -> None:
+    def __init__(self, ball: BallModel = BALL) -> None:
+        self.ball = ball
+        """Friction and bounce of the ball."""
         self._now_us = 0
         self._steps: list[tuple[int, Step]] = []
         """Ends of the last ticks, and their conditions."""
-        self._moments = [_Moment(BallTrack(-_KEPT_US))]
+        self._moments = [_Moment(BallTrack(-_KEPT_US, ball))]
         self._sound = 1  # number of moments whose tracks contain all inputs
         self._current: BallTrack | None = None
 
@@ -81,7 +84,7 @@ class BallTracker:
         self,
         duration_s: float,
         timeout_s: float,
-        rolling_m_s2: float,
+        *,
         contact: float = 0.0,
         walls: Walls | None = None,
     ) -> None:
@@ -90,7 +93,6 @@ class BallTracker:
         Args:
             duration_s: time since the last call.
             timeout_s: longest time without a sighting.
-            rolling_m_s2: deceleration of the rolling ball.
             contact: probability that a robot or a wall reaches the ball.
             walls: limits of the ball's way.
         """
@@ -98,7 +100,7 @@ class BallTracker:
         self._current = None
         oldest_us = self._now_us - _KEPT_US
         self._steps = [step for step in self._steps if step[0] >= oldest_us]
-        self._steps.append((self._now_us, Step(rolling_m_s2, contact, round(timeout_s * US_PER_S), walls)))
+        self._steps.append((self._now_us, Step(self.ball.rolling_m_s2, contact, round(timeout_s * US_PER_S), walls)))
         self._settle()
         while len(self._moments) > 1 and self._moments[1].track.time_us <= oldest_us:
             del self._moments[0]
@@ -109,7 +111,7 @@ class BallTracker:
     def see(self, sighting: Sighting, *others: Sighting) -> None:
         """Takes a sighting; `others` are other things in the same frame that may be the ball, if the first is not."""
         rank = _BY_OWN_CAMERA if sighting.own else _BY_MATE
-        self._take(rank, sighting.age_s, lambda track: track.see(sighting, self._steps[-1][1].rolling_m_s2, others))
+        self._take(rank, sighting.age_s, lambda track: track.see(sighting, others))
 
     def hold(self, robot: str, state: Floats, covariance: Floats, age_s: float = 0.0) -> None:
         """Takes a ball in a mouth of the team; earlier sightings do not count any more.
@@ -147,7 +149,7 @@ class BallTracker:
         if place == 0 and time_us < times_us[0]:
             return
         if place == len(times_us) or times_us[place] != time_us:
-            self._moments.insert(place, _Moment(BallTrack(time_us)))
+            self._moments.insert(place, _Moment(BallTrack(time_us, self.ball)))
             self._sound = min(self._sound, place)
         moment = self._moments[place]
         last = not moment.inputs or moment.inputs[-1][0] <= rank

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from procs.model.ball import BALL
+from procs.model.ball import BallModel
 
 _GRAVITY_M_S2 = 9.81
 _SEEN_M = 0.03  # deviation of a height that follows from the ball's size
@@ -45,7 +45,7 @@ class Flight:
         lift_m_s, deviation_m_s = (_LOB_M_S, _LOB_SD_M_S) if rises else (0.0, _UNKNOWN_LIFT_M_S)
         return cls(height_m, lift_m_s, _SEEN_M**2, 0.0, deviation_m_s**2)
 
-    def moved(self, duration_s: float) -> "tuple[Flight | None, float]":
+    def moved(self, duration_s: float, ball: BallModel) -> "tuple[Flight | None, float]":
         """Returns the flight after a step, None once the ball has landed, and how long it was on the ground meanwhile.
 
         The ball bounces until its lift is small.
@@ -54,13 +54,13 @@ class Flight:
         lands_s = (self.lift_m_s + lands_m_s) / _GRAVITY_M_S2
         if lands_s > duration_s:
             return self._in_the_air(duration_s), 0.0
-        rebound_m_s = BALL.bounce * lands_m_s
-        if rebound_m_s <= BALL.least_rebound_m_s:
+        rebound_m_s = ball.bounce * lands_m_s
+        if rebound_m_s <= ball.least_rebound_m_s:
             return None, duration_s - lands_s
-        before, share = self._in_the_air(lands_s), BALL.bounce**2
+        before, share = self._in_the_air(lands_s), ball.bounce**2
         lift_m2_s2 = share * before.lift_m2_s2 + (_BOUNCE_SHARE * rebound_m_s) ** 2
         after = Flight(0.0, rebound_m_s, share * before.height_m2, share * before.both_m2_s, lift_m2_s2)
-        return after.moved(duration_s - lands_s)
+        return after.moved(duration_s - lands_s, ball)
 
     def seen(self, height_m: float) -> "Flight | None":
         """Returns the flight after a sighting at a height, 0 for a ball that seems to lie; None if it does not fit."""

@@ -110,7 +110,7 @@ class WorldModel(Component):
 
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
-        self._ball = BallTracker()
+        self._ball = BallTracker(self.config.ball)
         self._apply_settings()
         self._opponents = RobotTracks()
         self._team = Team()
@@ -148,6 +148,8 @@ class WorldModel(Component):
         self._apply_settings()
 
     def _apply_settings(self) -> None:
+        if self._ball.ball != self.config.ball:
+            self._ball = BallTracker(self.config.ball)  # another ball, which no robot has seen yet
         self._walls = Walls.of(self.config.field, self.config.ball)
         self._rules = self._opponent_settings()
         player = self.config.players.get(self._robot)
@@ -180,7 +182,7 @@ class WorldModel(Component):
             message.kick_vz_m_s = lift_m_s
         self._take_mates_kicks(told, passed_s)
         contact = self._contact(team, passed_s)
-        self._ball.advance(passed_s, config.ball_timeout_s, config.ball.rolling_m_s2, contact, self._walls)
+        self._ball.advance(passed_s, config.ball_timeout_s, contact=contact, walls=self._walls)
         if kicker.ball_held and view.localized and not kicked:
             self._take_held_ball(view)
         self._held = kicker.ball_held

@@ -22,8 +22,8 @@ TOOLS = {"vision.yaml", "frames.yaml", "kidnapped.yaml", "soccer-baselines.yaml"
 PARTS = {"msl-field.yaml", "msl-radio.yaml", "msl-robot.yaml", "msl-percepts.yaml", "msl-stereo.yaml", "msl-truth.yaml"}
 
 
-def plan_of(file: str) -> Plan:
-    return load_plan(str(FOLDER / file), LaunchOptions())
+def plan_of(file: str, *sets: str) -> Plan:
+    return load_plan(str(FOLDER / file), LaunchOptions(sets=sets))
 
 
 def test_every_file_is_a_system_or_a_part_of_one() -> None:
@@ -63,6 +63,15 @@ def test_only_cameras_and_the_referee_read_the_ground_truth() -> None:
     readers = [plan.components[index] for index in truth.readers]
     assert [each.name for each in readers if each.namespace == "world"] == ["world/referee"]
     assert {each.name.rpartition("/")[2] for each in readers if each.namespace != "world"} == {"camera"}
+
+
+def test_shared_sizes_reach_all_that_use_them() -> None:
+    plan = plan_of("soccer.yaml", "shared.ball.radius_m=0.1", "shared.robot.radius_m=0.26")
+    settings = {each.name: each.config for each in plan.components}
+    for robot in ("cyan1", "magenta5"):
+        for name in ("agent", "skiller", "navigator", "world_model", "camera"):
+            config = settings[f"{robot}/{name}"]
+            assert (config["ball"]["radius_m"], config["robot"]["radius_m"]) == (0.1, 0.26), name
 
 
 def test_vision_alone_has_a_camera_of_files_and_both_detectors() -> None:

@@ -1,5 +1,6 @@
 """Page of the blackboard: all channels with age and rate, and the newest message of one."""
 
+import asyncio
 from typing import Any
 
 from nicegui import ui
@@ -90,8 +91,15 @@ def build(frame: Frame) -> None:
         if shown != fields.rows:
             fields.rows = shown
 
+    choosing = asyncio.Lock()
+
     async def choose(channel: str) -> None:
         chosen["channel"] = channel
+        async with choosing:
+            if chosen["channel"] == channel:
+                await show_chosen(channel)
+
+    async def show_chosen(channel: str) -> None:
         kind = (await link.types([channel])).get(channel)
         image.clear()
         if kind and CAMERA.members <= {*kind.__slots__}:

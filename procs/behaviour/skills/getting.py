@@ -7,19 +7,16 @@ from procs.behaviour.interception import Interception, Stand
 from procs.behaviour.skills.skill import Drive, Scene, Status, Step
 from procs.behaviour.skills.states import Exit, State, StateMachine, otherwise
 from procs.behaviour.view import Ball, Robot
-from procs.model.ball import BALL
 from procs.model.field import Point
 from procs.model.geometry import ahead, bearing_rad, wrap_rad
-from procs.model.robot import ROBOT
 
 _HANDLING_ON_M = 1.0
-_PUSH_M = ROBOT.held_ball_m(BALL) - 0.04  # middles of robot and ball when the ball is pressed into the mouth
+_PRESSED_M = 0.04  # by which the robot aims too near to the ball, to press it into the mouth
 _STAGING_M = 0.75
 _ALIGNED_RAD = 0.9
 _FACING_RAD = 0.25
 _WAITING_M = 0.5  # from the ball of a set piece until the mouth faces it
 _ENTRY_M_S = 0.25  # relative to the ball, which bounces off a faster mouth
-_CONTACT_M = ROBOT.held_ball_m(BALL)
 _NEAR_M = 1.0  # so near to the ball the robot gets slower ...
 _SOFT_1_S = 2.0  # ... by this speed for each metre, because it follows its commands late
 _GENTLE_1_S = 1.2  # the same at a set piece, which is not to be bumped away
@@ -62,7 +59,7 @@ class _Capture(StateMachine):
 
     def _ball_comes(self, scene: Scene) -> bool:
         """Whether there is a place in the way of the ball in time; the robot waits at the first one."""
-        self._stand = self._plan.stand(scene.view.ball, scene.view.own, scene.duration_s)
+        self._stand = self._plan.stand(scene.view, scene.duration_s)
         return self._stand is not None
 
     def _fast_ball_arrives(self, scene: Scene) -> bool:
@@ -129,7 +126,7 @@ class GetBall(_Capture):
     def _contest(self, scene: Scene) -> Step:
         meeting = _meeting(scene)
         goal_rad = bearing_rad(meeting, scene.field.goal_centre(-1.0))
-        place = ahead(meeting, goal_rad, _PUSH_M)
+        place = ahead(meeting, goal_rad, _pressed_m(scene))
         return _approach(scene, Drive(place, wrap_rad(goal_rad + math.pi), scene.speed_m_s, _ENTRY_M_S))
 
     def _go_behind(self, scene: Scene) -> Step:
@@ -219,8 +216,12 @@ def _passer(scene: Scene) -> Robot | None:
 
 
 def _meeting(scene: Scene) -> Point:
-    own = scene.view.own
-    return ballistics.meet(scene.view.ball, own.place, own.velocity_m_s).place
+    return ballistics.meet(scene.view).place
+
+
+def _pressed_m(scene: Scene) -> float:
+    """Returns the distance of the middles of robot and ball when the ball is pressed into the mouth."""
+    return scene.view.bodies.held_ball_m - _PRESSED_M
 
 
 def _approach(scene: Scene, drive: Drive) -> Step:
@@ -231,11 +232,11 @@ def _approach(scene: Scene, drive: Drive) -> Step:
 def drive_to(scene: Scene) -> Drive:
     """Returns the drive to where the robot meets the ball, as fast as the ball plus a little."""
     own, ball = scene.view.own, scene.view.ball
-    meeting = ballistics.meet(ball, own.place, own.velocity_m_s).place
+    meeting = ballistics.meet(scene.view).place
     facing_rad = bearing_rad(own.place, ball.place)  # a rolling ball comes from there, wherever it is met
     flees_m_s = ball.velocity_m_s.x_m * math.cos(facing_rad) + ball.velocity_m_s.y_m * math.sin(facing_rad)
     end_m_s = _ENTRY_M_S + max(0.0, flees_m_s)
-    gap_m = max(0.0, math.dist(own.place, ball.place) - _CONTACT_M)
+    gap_m = max(0.0, math.dist(own.place, ball.place) - scene.view.bodies.held_ball_m)
     limit_m_s = max(_ENTRY_M_S, _ENTRY_M_S + _SOFT_1_S * gap_m + flees_m_s)
     contested = ball.is_near(scene.view.opponents, _CONTEST_M)
     if scene.set_piece:
@@ -244,4 +245,4 @@ def drive_to(scene: Scene) -> Drive:
         limit_m_s = scene.speed_m_s
     elif scene.speed_m_s:
         limit_m_s = min(limit_m_s, scene.speed_m_s)
-    return Drive(ahead(meeting, facing_rad, -_PUSH_M), facing_rad, limit_m_s, end_m_s)
+    return Drive(ahead(meeting, facing_rad, -_pressed_m(scene)), facing_rad, limit_m_s, end_m_s)

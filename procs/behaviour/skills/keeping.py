@@ -7,7 +7,6 @@ from procs.behaviour import ballistics
 from procs.behaviour.skills.skill import Drive, Scene, Step
 from procs.behaviour.skills.states import Exit, State, StateMachine, otherwise
 from procs.behaviour.view import Robot
-from procs.model.ball import BALL
 from procs.model.field import Field, Point
 from procs.model.geometry import ahead, bearing_rad, clamp
 
@@ -102,7 +101,8 @@ class KeepGoal(KeepLine):
 
     def _watch(self, scene: Scene) -> Scene:
         crosses_m = crossing_m(scene) if scene.view.ball.known else None
-        on_goal = crosses_m is not None and abs(crosses_m) < scene.field.goal_width_m / 2 + BALL.radius_m
+        beside_m = scene.field.goal_width_m / 2 + scene.view.bodies.ball_radius_m
+        on_goal = crosses_m is not None and abs(crosses_m) < beside_m
         self._save = best_save(scene) if on_goal else None
         return scene
 
@@ -189,7 +189,7 @@ def best_save(scene: Scene) -> Save | None:
     own, best = scene.view.own, None
     for step in range(1, round(_LOOK_AHEAD_S / _STEP_S)):
         time_s = step * _STEP_S
-        place = ballistics.ball_after(scene.view.ball, time_s)
+        place = ballistics.ball_after(scene.view.ball, time_s, scene.view.bodies)
         out_m = place.x_m + scene.field.half_length_m
         if out_m < BEFORE_LINE_M - _STEP_S * _SPEED_M_S:
             break

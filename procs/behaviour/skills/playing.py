@@ -6,14 +6,11 @@ from abc import abstractmethod
 from procs.behaviour import ballistics
 from procs.behaviour.skills.skill import Drive, Scene, Status, Step
 from procs.behaviour.skills.states import Exit, State, StateMachine, otherwise
-from procs.behaviour.view import Robot
-from procs.model.ball import BALL
+from procs.behaviour.view import View
 from procs.model.field import Point
 from procs.model.geometry import ahead, bearing_rad, clamp, wrap_rad
-from procs.model.robot import ROBOT
 
 _LOST_S = 0.3  # a ball that the light barrier misses for longer is lost
-_MOUTH_M = ROBOT.held_ball_m(BALL)  # from the robot's middle to the middle of the ball in the mouth
 _LEAST_KICK_M_S = 1.0
 _DRIBBLE_M_S = 2.7
 _THERE_M = 0.3
@@ -148,7 +145,7 @@ class _Kick(_WithBall):
         turn_rad_s = wrap_rad(own.heading_rad - self._heading_rad) / scene.duration_s if known else 0.0
         self._heading_rad = own.heading_rad
         slowed_rad_s = math.copysign(max(0.0, abs(turn_rad_s) - self._SLOWING_RAD_S), turn_rad_s)
-        mouth_m_s = _mouth_velocity_m_s(own, slowed_rad_s)
+        mouth_m_s = _mouth_velocity_m_s(scene.view, slowed_rad_s)
         self._wanted_rad, self._kick_m_s = self._aim(scene, speed_m_s, mouth_m_s)
         off_rad = wrap_rad(self._wanted_rad - own.heading_rad - (turn_rad_s + slowed_rad_s) / 2 * self._LEAD_S)
         patience = 1.0 + 0.5 * self._running_s  # a poor kick is better than none
@@ -181,7 +178,7 @@ class _Kick(_WithBall):
         """
         heading_rad, missing = bearing_rad(scene.view.own.place, scene.place), Point(0.0, 0.0)
         for _ in range(2):
-            ball = ahead(scene.view.own.place, heading_rad, _MOUTH_M)
+            ball = ahead(scene.view.own.place, heading_rad, scene.view.bodies.held_ball_m)
             way_rad = bearing_rad(ball, scene.place)
             missing = ahead(Point(-mouth_m_s.x_m, -mouth_m_s.y_m), way_rad, speed_m_s)
             heading_rad = math.atan2(missing.y_m, missing.x_m)
@@ -250,8 +247,9 @@ class Pass(_Kick):
     """Kicks so that the ball arrives at the place at a speed that a robot can take."""
 
     def _speed_m_s(self, scene: Scene, distance_m: float) -> float:
-        rolls_m = max(0.0, distance_m - 2 * _MOUTH_M)  # from mouth to mouth
-        return ballistics.kick_speed_m_s(rolls_m, scene.speed_m_s or _ARRIVAL_M_S)
+        bodies = scene.view.bodies
+        rolls_m = max(0.0, distance_m - 2 * bodies.held_ball_m)  # from mouth to mouth
+        return ballistics.kick_speed_m_s(rolls_m, scene.speed_m_s or _ARRIVAL_M_S, bodies)
 
     def _tolerance_rad(self, _distance_m: float) -> float:
         return 0.05
@@ -262,14 +260,14 @@ class Push(Pass):
 
 
 def _lob(scene: Scene, distance_m: float) -> ballistics.Lob:
-    own, way_rad = scene.view.own, bearing_rad(scene.view.own.place, scene.place)
+    own, bodies, way_rad = scene.view.own, scene.view.bodies, bearing_rad(scene.view.own.place, scene.place)
     carried_m_s = own.velocity_m_s.x_m * math.cos(way_rad) + own.velocity_m_s.y_m * math.sin(way_rad)
-    return ballistics.lob(distance_m - _MOUTH_M, max(0.0, carried_m_s))
+    return ballistics.lob(distance_m - bodies.held_ball_m, bodies, max(0.0, carried_m_s))
 
 
-def _mouth_velocity_m_s(own: Robot, turn_rad_s: float) -> Point:
-    """Returns the velocity of the ball in the mouth of a robot that drives and turns."""
-    turning_m_s = turn_rad_s * _MOUTH_M
+def _mouth_velocity_m_s(view: View, turn_rad_s: float) -> Point:
+    """Returns the velocity of the ball in the mouth of the own robot, which drives and turns."""
+    own, turning_m_s = view.own, turn_rad_s * view.bodies.held_ball_m
     return Point(
         own.velocity_m_s.x_m - turning_m_s * math.sin(own.heading_rad),
         own.velocity_m_s.y_m + turning_m_s * math.cos(own.heading_rad),

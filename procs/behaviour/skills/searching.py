@@ -7,7 +7,6 @@ from procs.behaviour.skills.states import Exit, State, StateMachine
 from procs.behaviour.view import View
 from procs.model.field import Field, Point
 from procs.model.geometry import bearing_rad
-from procs.model.robot import RADIUS_M
 
 _STAND_S = 1.5  # a standing camera sees best, and most robots find their place at once
 _TURN_RAD_S, _TURN_S = 0.8, 4.0
@@ -120,7 +119,8 @@ def way_is_free(scene: Scene, way_m: float) -> bool:
     sight, game = scene.sight, scene.game
     if sight is None or not (game.free_play or game.paused):
         return False
-    reach_m, beside_m = way_m + RADIUS_M, RADIUS_M + _BESIDE_M
+    robot_m = scene.view.bodies.robot_radius_m
+    reach_m, beside_m = way_m + robot_m, robot_m + _BESIDE_M
     for obstacle in sight.obstacles:
         x_m, y_m = obstacle.place
         if x_m > 0.0 and x_m - obstacle.radius_m < reach_m and abs(y_m) - obstacle.radius_m < beside_m:

@@ -8,11 +8,11 @@ import pytest
 from procs.behaviour.interception import Interception
 from procs.behaviour.view import Ball
 from procs.model.field import Point
-from tests.procs.behaviour.behaviour_parts import ball, robot
+from tests.procs.behaviour.behaviour_parts import ball, robot, view
 
 
 def test_crossing_ball_is_awaited_ahead_of_where_it_is() -> None:
-    stand = Interception().stand(ball(0.0, -4.0, 0.0, 3.0), robot("cyan2", -1.0, 0.0), 0.05)
+    stand = Interception().stand(view(robot("cyan2", -1.0, 0.0), ball(0.0, -4.0, 0.0, 3.0)), 0.05)
     assert stand is not None
     assert stand.place.x_m == pytest.approx(0.0)
     assert -2.0 < stand.place.y_m < 2.0
@@ -21,12 +21,12 @@ def test_crossing_ball_is_awaited_ahead_of_where_it_is() -> None:
 
 def test_ball_that_rests_or_runs_away_is_not_awaited() -> None:
     plan, own = Interception(), robot("cyan2", 0.0, 0.0)
-    assert plan.stand(ball(2.0, 0.0), own, 0.05) is None
-    assert plan.stand(ball(1.0, 0.0, 2.0, 0.0), own, 0.05) is None
+    assert plan.stand(view(own, ball(2.0, 0.0)), 0.05) is None
+    assert plan.stand(view(own, ball(1.0, 0.0, 2.0, 0.0)), 0.05) is None
 
 
 def test_fast_ball_is_awaited_where_the_robot_stands() -> None:
-    stand = Interception().stand(ball(6.0, 0.2, -3.5, 0.0), robot("cyan2", 0.0, 0.0), 0.05)
+    stand = Interception().stand(view(robot("cyan2", 0.0, 0.0), ball(6.0, 0.2, -3.5, 0.0)), 0.05)
     assert stand is not None
     assert stand.place == pytest.approx((0.0, 0.2), abs=0.01)
 
@@ -37,7 +37,7 @@ def test_place_stays_while_the_measured_velocity_is_noisy() -> None:
         noise = 0.2 * rng.standard_normal(2)
         seen = ball(0.0, -4.0 + 0.15 * tick, float(noise[0]), 3.0 + float(noise[1]))
         own = robot("cyan2", -0.8 + 0.05 * tick, 0.0, -0.1 * tick)
-        stand = plan.stand(plan.smoothed(seen, 0.05), own, 0.05)
+        stand = plan.stand(view(own, plan.smoothed(seen, 0.05)), 0.05)
         if tick >= 4 and stand:
             places.append(stand.place)
     assert len(places) == 12

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from procs.behaviour import obstacles
+from procs.behaviour.bodies import USUAL
 from procs.behaviour.path import Disc, find_way
 from procs.model.field import Point
 from tests.procs.behaviour.behaviour_parts import FIELD
@@ -75,5 +76,7 @@ def test_following_the_path_touches_no_disc_and_arrives() -> None:
 def test_no_way_leads_between_an_obstacle_and_the_wall() -> None:
     at_wall, target, parked = Point(-3.7, -7.75), Point(-1.4, -6.8), Disc(Point(-3.1, -7.5), 0.62, 0.5)
     towards_wall_rad = -0.9
-    way = find_way(at_wall, target, [parked], towards_wall_rad, lambda place: obstacles.inside_walls(place, FIELD))
+    way = find_way(
+        at_wall, target, [parked], towards_wall_rad, lambda place: obstacles.inside_walls(place, FIELD, USUAL)
+    )
     assert 0.5 < way.direction_rad < 2.5

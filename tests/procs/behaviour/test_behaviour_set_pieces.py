@@ -5,6 +5,7 @@ import math
 import pytest
 
 from procs.behaviour import set_pieces
+from procs.behaviour.bodies import USUAL
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.roles import ATTACKER, SUPPORTER
 from procs.behaviour.set_pieces import BOOK
@@ -43,7 +44,7 @@ def test_every_set_piece_but_the_penalty_has_two_variants() -> None:
 
 @pytest.mark.parametrize("game", GAMES, ids=name_of)
 def test_receiver_waits_within_the_rules_and_the_reach_of_a_pass(game: Game) -> None:
-    chosen = set_pieces.choose(game, (), FIELD)
+    chosen = set_pieces.choose(game, (), FIELD, USUAL)
     assert chosen is not None
     name, place = chosen
     assert name == BOOK[game.state][game.number % 2].name
@@ -58,7 +59,7 @@ def test_receiver_waits_within_the_rules_and_the_reach_of_a_pass(game: Game) -> 
 def test_variant_whose_way_is_blocked_is_passed_over(game: Game) -> None:
     places = [set_pieces.receiver_place(variant, game, FIELD) for variant in BOOK[game.state]]
     blocker = robot("", *between(game.spot, places[game.number % 2], 0.6))
-    chosen = set_pieces.choose(game, (blocker,), FIELD)
+    chosen = set_pieces.choose(game, (blocker,), FIELD, USUAL)
     assert chosen is not None
     assert chosen[0] == BOOK[game.state][(game.number + 1) % 2].name
 

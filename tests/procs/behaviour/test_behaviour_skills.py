@@ -5,6 +5,7 @@ import math
 import pytest
 
 from procs.behaviour import ballistics
+from procs.behaviour.bodies import USUAL
 from procs.behaviour.skills.book import Machine
 from procs.behaviour.skills.getting import GetBall, Intercept
 from procs.behaviour.skills.keeping import KeepGoal, KeepLine
@@ -208,7 +209,7 @@ def test_pass_arrives_at_the_mouth_at_the_wanted_speed() -> None:
         Pass().step(scene(view(OWN, ball(0.33, 0.0)), distance_m, speed_m_s=arrival_m_s, holds_ball=True)).kick_m_s
     )
     rolls_m = distance_m - 2 * ROBOT.held_ball_m(BALL)
-    assert kick_m_s == pytest.approx(ballistics.kick_speed_m_s(rolls_m, arrival_m_s), rel=0.01)
+    assert kick_m_s == pytest.approx(ballistics.kick_speed_m_s(rolls_m, arrival_m_s, USUAL), rel=0.01)
 
 
 def test_aiming_without_end_fails() -> None:

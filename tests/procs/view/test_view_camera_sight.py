@@ -64,6 +64,19 @@ def test_the_calibration_comes_from_the_settings() -> None:
     assert abs(away_px - MirrorConfig().mirror().radius_px(2.0)) > 5.0
 
 
+def test_a_smaller_ball_has_a_smaller_ring() -> None:
+    ball, radii_px = ball_percept_t(), []
+    ball.visible, ball.x_m = True, 2.0
+    for radius_m in (0.05, 0.11):
+        scene = Scene()
+        settings = {("cyan1/omni_ball", "ball.radius_m"): radius_m}
+        messages = {"cyan1/image": frame(400, 400), "cyan1/ball_percept": ball}
+        MatchView().sight("cyan1/image", Newest(messages, settings), scene)
+        radii_px += [shape["r"] for shape in json.loads(scene.encoded())["shapes"] if "r" in shape]
+    small_px, usual_px = radii_px
+    assert 3.0 < small_px < usual_px - 1.5
+
+
 def test_height_candidates_and_teams_are_drawn() -> None:
     ball, other, obstacles, obstacle = ball_percept_t(), ball_candidate_t(), obstacle_percepts_t(), obstacle_t()
     ball.visible, ball.x_m, ball.z_m, other.x_m, other.confidence = True, 2.0, 0.34, -3.0, 0.4

@@ -32,6 +32,17 @@ def test_findings_are_drawn_where_they_were_found() -> None:
         assert np.hypot(columns.mean() - expected[0], rows.mean() - expected[1]) < 8.0
 
 
+def test_ring_fits_the_size_of_the_ball() -> None:
+    ball = ball_percept_t()
+    ball.visible, ball.x_m = True, 2.0
+    widths_px = []
+    for radius_m in (0.05, 0.11, 0.2):
+        black = np.zeros((400, 400, 3), np.uint8)
+        picture = drawn(black, MIRROR, ball, obstacle_percepts_t(), line_points_t(), ball_radius_m=radius_m)
+        widths_px.append(int(np.ptp(np.nonzero((picture == BALL).all(axis=2))[1])))
+    assert widths_px[0] < widths_px[1] < widths_px[2]
+
+
 def test_nothing_found_leaves_the_picture_as_it_is() -> None:
     frame = np.full((400, 400, 3), 77, np.uint8)
     empty = drawn(frame, MIRROR, ball_percept_t(), obstacle_percepts_t(), line_points_t(), scale=1)

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+from fnmatch import fnmatchcase
 from typing import Any, cast
 
 from fwk.web import Newest, RunAccess, Scene
@@ -44,9 +45,9 @@ def match() -> dict[str, Any]:
     }
 
 
-def drawn(messages: dict[str, Any]) -> dict[str, Any]:
+def drawn(messages: dict[str, Any], settings: dict[tuple[str, str], Any] | None = None) -> dict[str, Any]:
     scene = Scene()
-    MatchView().draw(Newest(messages), scene)
+    MatchView().draw(Newest(messages, settings), scene)
     made: dict[str, Any] = json.loads(scene.encoded())
     return made
 
@@ -56,6 +57,17 @@ def test_robots_and_ball_lie_where_they_truly_are() -> None:
     places = {shape["drag"]: (shape["x"], shape["y"]) for shape in shapes if "drag" in shape}
     assert places == {"cyan1": (1.0, 2.0), "ball": (3.0, -1.0)}
     assert shapes[-1]["drag"] == "ball"  # above what robots believe of it
+
+
+def test_robots_and_ball_have_the_sizes_of_the_settings() -> None:
+    sizes = {("world/simulator", "robot.radius_m"): 0.26, ("world/simulator", "ball.radius_m"): 0.1}
+    for settings, radii_m in ((sizes, {"cyan1": 0.26, "ball": 0.1}), (None, {"cyan1": 0.25, "ball": 0.11})):
+        shapes = drawn(match(), settings)["shapes"]
+        assert {shape["drag"]: shape["r"] for shape in shapes if "drag" in shape} == radii_m
+    assert all(
+        fnmatchcase(f"{component}.{name.partition('.')[0]}", pattern)
+        for (component, name), pattern in zip(sizes, MatchView.settings, strict=True)
+    )
 
 
 def test_beliefs_targets_and_roles_have_layers_of_their_own() -> None:

@@ -56,7 +56,7 @@ def follow(eyes: list[Eye], states: Iterator[Floats]) -> Floats:
     tracker = BallTracker()
     errors = []
     for frame, state in enumerate(states):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         for number, eye in enumerate(eyes):
             sighting = eye.look(state[:2], own=number == 0)
             if sighting is not None and (number == 0 or frame % 2 == 0):

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
+from procs.model.ball import BALL
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
@@ -66,7 +67,7 @@ def nees(eyes_at: list[tuple[float, float]], runs: int, frames: int = 30) -> flo
             slower = state[2:] * max(0.0, 1 - ROLLING_M_S2 * PERIOD_S / speed)
             state[:2] += (state[2:] + slower) / 2 * PERIOD_S + push * PERIOD_S**2 / 2
             state[2:] = slower + push * PERIOD_S
-            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+            tracker.advance(PERIOD_S, 2.0)
             for number, eye in enumerate(eyes):
                 if (sighting := eye.look(state[:2], own=number == 0)) is not None:
                     tracker.see(sighting)
@@ -86,7 +87,7 @@ def test_covariance_is_honest(eyes_at: list[tuple[float, float]]) -> None:
 def test_phantom_seen_once_changes_nothing() -> None:
     tracker = BallTracker()
     for frame in range(20):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         place = (5.0, 5.0) if frame == 15 else (1.0, 1.0)
         tracker.see(Sighting("a", True, np.array(place), np.eye(2) * 0.02**2))
         assert (tracker.age_s == 0.0) == (frame != 15)
@@ -98,10 +99,10 @@ def test_less_likely_candidate_that_fits_is_the_ball() -> None:
     tracker = BallTracker()
     here_m, there_m = np.array((1.0, 0.0)), np.array((-3.0, 2.0))
     for _ in range(20):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         tracker.see(Sighting("a", True, here_m, np.eye(2) * 0.02**2))
     for _ in range(20):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         tracker.see(*(Sighting("a", True, place_m, np.eye(2) * 0.02**2) for place_m in (there_m, here_m)))
         assert tracker.track.state[:2] == pytest.approx(here_m, abs=0.03)
         assert tracker.age_s == 0.0
@@ -110,7 +111,7 @@ def test_less_likely_candidate_that_fits_is_the_ball() -> None:
 def test_moved_ball_is_found_with_the_second_sighting() -> None:
     tracker = BallTracker()
     for frame in range(12):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         place = (1.0, 1.0) if frame < 10 else (-3.0, 0.0)
         tracker.see(Sighting("a", True, np.array(place), np.eye(2) * 0.02**2))
     assert tracker.track.state[:2] == pytest.approx((-3.0, 0.0), abs=0.05)
@@ -120,12 +121,12 @@ def test_own_sighting_precedes_an_equally_accurate_mate() -> None:
     tracker = BallTracker()
     own, other = np.array((1.0, 1.0)), np.array((2.5, 1.0))
     for _ in range(10):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         tracker.see(Sighting("me", True, own, np.eye(2) * 0.03**2))
         tracker.see(Sighting("mate", False, other, np.eye(2) * 0.03**2))
         assert tracker.track.state[:2] == pytest.approx(own, abs=0.02)
     for _ in range(10):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         tracker.see(Sighting("mate", False, other, np.eye(2) * 0.03**2))
     assert tracker.track.state[:2] == pytest.approx(other, abs=0.1)
 
@@ -137,7 +138,7 @@ def test_old_sighting_is_used_for_its_own_time() -> None:
         eye = Eye("mate", (0.0, -2.0), seed, recognised=1.0)
         tracker = BallTracker()
         for now, then in zip(history[3:], history, strict=False):
-            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+            tracker.advance(PERIOD_S, 2.0)
             sighting = eye.look(then[:2], age_s=3 * PERIOD_S)
             assert sighting is not None
             tracker.see(sighting)
@@ -150,7 +151,7 @@ def test_order_of_arrival_does_not_matter() -> None:
         tracker, rng = BallTracker(), np.random.default_rng(3)
         held: list[Sighting] = []
         for frame in range(16):
-            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+            tracker.advance(PERIOD_S, 2.0)
             noise_m = 0.02 * rng.standard_normal((2, 2))
             tracker.see(Sighting("me", True, np.array((0.1 * frame, 0.0)) + noise_m[0], np.eye(2) * 0.02**2))
             held = [Sighting(one.robot, False, one.position_m, one.covariance_m2, one.age_s + PERIOD_S) for one in held]
@@ -166,22 +167,22 @@ def test_order_of_arrival_does_not_matter() -> None:
 
 def test_ball_is_forgotten_after_the_timeout() -> None:
     tracker = BallTracker()
-    tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    tracker.advance(PERIOD_S, 2.0)
     tracker.see(Sighting("a", True, np.zeros(2), np.eye(2) * 0.01))
     for _ in range(39):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
     assert tracker.known
     assert tracker.age_s == pytest.approx(1.95)
     assert tracker.observers == 0
     for _ in range(3):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
     assert not tracker.known
 
 
 def test_held_ball_is_in_the_mouth_whatever_the_cameras_say() -> None:
     tracker = BallTracker()
     for frame in range(5):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         tracker.hold("me", np.array((0.33 + frame * PERIOD_S, 0.0, 1.0, 0.0)), np.zeros((4, 4)))
         tracker.see(Sighting("mate", False, np.array((3.0, 3.0)), np.eye(2) * 0.01**2))
         assert tracker.track.state == pytest.approx((0.33 + frame * PERIOD_S, 0.0, 1.0, 0.0), abs=0.06)
@@ -190,9 +191,9 @@ def test_held_ball_is_in_the_mouth_whatever_the_cameras_say() -> None:
 def test_older_second_sighting_gives_place_and_velocity() -> None:
     tracker = BallTracker()
     for _ in range(10):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         tracker.see(Sighting("me", True, np.array((0.0, 0.0)), np.eye(2) * 0.02**2))
-    tracker.advance(PERIOD_S, 2.0, 0.0)
+    tracker.advance(PERIOD_S, 2.0)
     tracker.see(Sighting("me", True, np.array((2.0, 0.0)), np.eye(2) * 0.02**2))
     tracker.see(Sighting("mate", False, np.array((1.8, 0.0)), np.eye(2) * 0.02**2, age_s=0.04))
     assert tracker.track.state[0] == pytest.approx(2.0, abs=0.05)
@@ -203,7 +204,7 @@ def test_held_ball_is_as_uncertain_as_the_own_pose() -> None:
     tracker = BallTracker()
     covariance = np.diag((0.1**2, 0.2**2, 0.0, 0.0))
     for _ in range(3):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         tracker.hold("me", np.array((0.33, 0.0, 0.0, 0.0)), covariance)  # the pose's error persists from tick to tick
     assert np.sqrt(np.diag(tracker.track.covariance)[:2]) == pytest.approx((0.1, 0.2), rel=0.05)
 
@@ -215,7 +216,7 @@ def inside_95(states: list[Floats], contacts: list[bool], runs: int = 12) -> flo
         eyes = [Eye(f"r{number}", place, 31 * seed + number) for number, place in enumerate([(-2.0, 1.0), (3.0, -3.0)])]
         tracker = BallTracker()
         for frame, (state, contact) in enumerate(zip(states, contacts, strict=True)):
-            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact)
+            tracker.advance(PERIOD_S, 2.0, contact=contact)
             for number, eye in enumerate(eyes):
                 if frame % 2 == number and (sighting := eye.look(state[:2], own=number == 0)) is not None:
                     tracker.see(sighting)
@@ -248,7 +249,7 @@ def test_claim_is_honest_in_every_case(states: list[Floats], contact: bool) -> N
 
 
 def test_ball_stays_within_the_walls() -> None:
-    track = BallFilter(np.array((11.5, 0.0)), np.eye(2) * 0.01**2)
+    track = BallFilter(np.array((11.5, 0.0)), np.eye(2) * 0.01**2, BALL)
     track.kick(np.array((8.0, 1.0)))
     for _ in range(20):
         track.predict(PERIOD_S, ROLLING_M_S2)
@@ -259,7 +260,7 @@ def test_ball_stays_within_the_walls() -> None:
 
 def test_covariance_stays_symmetric_and_positive() -> None:
     rng = np.random.default_rng(1)
-    track = BallFilter(np.zeros(2), np.eye(2) * 0.01)
+    track = BallFilter(np.zeros(2), np.eye(2) * 0.01, BALL)
     for _ in range(400):
         track.predict(PERIOD_S, ROLLING_M_S2, contact=True)
         track.see(rng.standard_normal(2) * 0.1, np.diag(rng.uniform(1e-6, 0.1, 2)))
@@ -269,7 +270,7 @@ def test_covariance_stays_symmetric_and_positive() -> None:
 
 def test_long_step_is_as_sound_as_many_short_ones() -> None:
     """A step may be as long as the age of a message; no probability becomes negative."""
-    track = BallFilter(np.zeros(2), np.eye(2) * 0.01)
+    track = BallFilter(np.zeros(2), np.eye(2) * 0.01, BALL)
     for _ in range(10):
         track.predict(0.5, ROLLING_M_S2, contact=True)
         track.see(np.zeros(2), np.eye(2) * 0.01)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from procs.model.ball import BALL
 from procs.model.estimation import predict, update
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_modes import passes
@@ -65,7 +66,7 @@ def test_mixture_equals_the_estimator_of_the_library() -> None:
     from filterpy.kalman import IMMEstimator, KalmanFilter
 
     rng = np.random.default_rng(4)
-    track = BallFilter(np.zeros(2), np.eye(2) * 0.01)
+    track = BallFilter(np.zeros(2), np.eye(2) * 0.01, BALL)
     roots = 0.3 * rng.standard_normal((4, 7, 7))
     track._x, track._p = 0.1 * rng.standard_normal((4, 7)), roots @ roots.transpose(0, 2, 1) + 0.01 * np.eye(7)
     track._weights = np.array((0.1, 0.5, 0.3, 0.1))

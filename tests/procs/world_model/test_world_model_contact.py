@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from procs.model.ball import BALL
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.contact import touch_probability
 
@@ -12,7 +13,7 @@ ROBOT_M2 = np.array([0.03**2])
 
 def ball(speed_m_s: float = 0.0) -> BallFilter:
     """Returns a ball at the origin, known well; with a speed it was kicked along x."""
-    found = BallFilter(np.zeros(2), np.eye(2) * 0.01**2)
+    found = BallFilter(np.zeros(2), np.eye(2) * 0.01**2, BALL)
     if speed_m_s:
         found.kick(np.array((speed_m_s, 0.0)))
     else:

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pytest
 
-from procs.model.ball import BALL, SLIDING_M_S2
+from procs.model.ball import BALL
 from procs.simulation.physics.rolling import RollingFriction
 from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.seen import Seen
-from tests.procs.world_model.eyes import PERIOD_S, ROLLING_M_S2, Eye, Floats, rms, rolling
+from tests.procs.world_model.eyes import PERIOD_S, Eye, Floats, rms, rolling
 
 
 def test_kicked_ball_has_the_right_velocity_after_150_ms() -> None:
@@ -20,7 +20,7 @@ def test_kicked_ball_has_the_right_velocity_after_150_ms() -> None:
         eye = Eye("a", (0, 0), seed, recognised=1.0)
         tracker = BallTracker()
         for state in [*rolling((1, 0.5), (0, 0), 20), *rolling((1, 0.5), (8, 0), 3)]:
-            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+            tracker.advance(PERIOD_S, 2.0)
             sighting = eye.look(state[:2], own=True)
             assert sighting is not None
             tracker.see(sighting)
@@ -58,7 +58,7 @@ def follow_hit(
         for frame, state in enumerate(hit(velocity_m_s, 20, frames)):
             if told_m_s and frame == 20:
                 tracker.kick(np.array(told_m_s))
-            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact=frame <= contact_until)
+            tracker.advance(PERIOD_S, 2.0, contact=frame <= contact_until)
             for number, eye in enumerate(eyes):
                 sighting = eye.look(state[:2], own=number == 0) if (frame + number) % 2 else None
                 if sighting is not None:
@@ -86,7 +86,7 @@ def test_kicked_ball_slides_although_the_kicker_is_near() -> None:
 def test_free_ball_that_is_not_seen_is_hardly_expected_to_be_hit() -> None:
     tracker, eye = BallTracker(), Eye("a", (0, 0), 3, recognised=1.0)
     for frame, state in enumerate(rolling((-2.0, 1.0), (1.5, 0.3), 66)):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         sighting = eye.look(state[:2], own=True)
         if sighting is not None and frame < 60:
             tracker.see(sighting)
@@ -98,10 +98,10 @@ def just_kicked(robot: str, held: int) -> BallTracker:
     """Returns the tracker of a robot that held the ball so many frames and kicked it at 8 m/s a frame ago."""
     tracker = BallTracker()
     for _ in range(held):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         tracker.hold(robot, np.array((0.33, 0.0, 0.0, 0.0)), np.zeros((4, 4)))
     tracker.kick(np.array((8.0, 0.0)))
-    tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    tracker.advance(PERIOD_S, 2.0)
     return tracker
 
 
@@ -118,7 +118,7 @@ def test_late_sighting_from_before_a_kick_does_not_undo_it() -> None:
     tracker = BallTracker()
     places_m = [max(0.0, 7.0 * (frame - 12) * PERIOD_S) for frame in range(20)]
     for frame, x_m in enumerate(places_m):
-        tracker.advance(PERIOD_S, 2.0, 0.0, contact=True)
+        tracker.advance(PERIOD_S, 2.0, contact=True)
         tracker.see(Sighting("me", True, np.array((x_m, 0.0)), np.eye(2) * 0.02**2))
         if frame >= 3:
             late_m = np.array((places_m[frame - 3], 0.0))
@@ -132,10 +132,10 @@ def test_cameras_outrank_the_kickers_old_sighting() -> None:
     """A mate saw the ball sharply, then kicked it; the robot's own camera gives a frame every second tick."""
     tracker = BallTracker()
     for _ in range(6):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         tracker.see(Sighting("kicker", False, np.array((1.0, 0.0)), np.eye(2) * 0.005**2))
     for frame in range(1, 5):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         ball_m = np.array((1.0 + 8.0 * frame * PERIOD_S, 0.0))
         if frame % 2 == 0:
             tracker.see(Sighting("me", True, ball_m, np.eye(2) * 0.06**2))
@@ -149,7 +149,7 @@ def test_ball_that_bounces_off_a_robot_is_followed_at_once() -> None:
     for seed in range(20):
         eye, tracker = Eye("a", (0, 0), seed, recognised=1.0), BallTracker()
         for frame, state in enumerate([*rolling((-2, 1), (4.0, 0), 12), *rolling((0.3, 1), (-2.0, 1.0), 3)]):
-            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact=frame >= 10)
+            tracker.advance(PERIOD_S, 2.0, contact=frame >= 10)
             sighting = eye.look(state[:2], own=True)
             assert sighting is not None
             tracker.see(sighting)
@@ -168,9 +168,9 @@ def test_kick_of_a_mate_begins_at_its_mouth() -> None:
     """Cameras have already shown a part of the flight, which must not count twice."""
     tracker = BallTracker()
     for frame in range(8):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact=True)
+        tracker.advance(PERIOD_S, 2.0, contact=True)
         flight_s = max(0, frame - 5) * PERIOD_S
-        ball_m = np.array((8.0 * flight_s - SLIDING_M_S2 / 2 * flight_s**2, 0.0))
+        ball_m = np.array((8.0 * flight_s - BALL.sliding_m_s2 / 2 * flight_s**2, 0.0))
         tracker.see(Sighting("me", True, ball_m, np.eye(2) * 0.05**2))
     mouth = Seen.of([(0.0, 0.0)], [np.eye(2) * 0.03**2], [0.0])
     tracker.kick(np.array((8.0, 0.0)), 0.1, mouth)
@@ -182,12 +182,12 @@ def test_frame_between_command_and_kick_does_not_slow_the_ball() -> None:
     """The ball leaves in the middle of a tick; a frame from the first half of it still shows the ball in the mouth."""
     tracker = BallTracker()
     for _ in range(10):
-        tracker.advance(0.04, 2.0, 0.4, contact=True)
+        tracker.advance(0.04, 2.0, contact=True)
         tracker.hold("me", np.array((0.33, 0.0, 0.0, 0.0)), np.eye(4) * 1e-4)
     tracker.kick(np.array((8.0, 0.0)), -0.02)
     flown_s = -0.02
     for tick in range(5):
-        tracker.advance(0.04, 2.0, 0.4)
+        tracker.advance(0.04, 2.0)
         flown_s += 0.04
         if tick % 2 == 0:
             x_m = 0.33 + 8.0 * max(0.0, flown_s - 0.035) - 1.5 * max(0.0, flown_s - 0.035) ** 2
@@ -199,7 +199,7 @@ def test_kick_ends_the_touches_that_were_possible() -> None:
     """A mate hears of a kick a tick later; that tick began with the kicker at the ball."""
     tracker = just_kicked("a", held=10)
     late = just_kicked("a", held=10)
-    tracker.advance(0.05, 2.0, 0.4, contact=False)
-    late.advance(0.05, 2.0, 0.4, contact=True)
+    tracker.advance(0.05, 2.0, contact=False)
+    late.advance(0.05, 2.0, contact=True)
     late.kick(np.array((8.0, 0.0)), 0.05)
     assert late.track.covariance[2, 2] < 2 * tracker.track.covariance[2, 2]

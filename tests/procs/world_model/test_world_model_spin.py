@@ -32,18 +32,18 @@ def test_kick_of_a_driving_robot_slides_less() -> None:
     """The ball rolled along with the robot; without a sighting the end of the slide is foreseen."""
     tracker = BallTracker()
     for frame in range(20):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact=1.0)
+        tracker.advance(PERIOD_S, 2.0, contact=1.0)
         tracker.hold("me", np.array((2.0 * (frame - 20) * PERIOD_S, 0.0, 2.0, 0.0)), np.eye(4) * 1e-4)
     tracker.kick(np.array((5.5, 0.0)))
     states = [*run((2.0, 0.0), (5.5, 0.0), 18)]
     for _ in states:
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
     assert tracker.track.state[2] == pytest.approx(states[-1][2], abs=0.15)
 
 
 def test_stopped_ball_goes_on_by_its_spin() -> None:
     """A robot stops a rolling ball; its spin drives it on, and it is not taken for a resting one."""
-    track = BallFilter(np.zeros(2), np.eye(2) * 1e-4)
+    track = BallFilter(np.zeros(2), np.eye(2) * 1e-4, BALL)
     for _ in range(20):
         track.predict(PERIOD_S, ROLLING_M_S2)
         track.hold(np.array((0.0, 0.0, 2.5, 0.0)), np.eye(4) * 1e-4)
@@ -60,11 +60,11 @@ def followed(carpet: float, kicks: int) -> BallTracker:
     tracker, eye = BallTracker(), Eye("me", (0.0, 1.0), 5, recognised=1.0)
     for _ in range(kicks):
         for _ in range(10):
-            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact=1.0)
+            tracker.advance(PERIOD_S, 2.0, contact=1.0)
             tracker.hold("me", np.zeros(4), np.eye(4) * 1e-4)
         tracker.kick(np.array((5.0, 0.0)))
         for state in run((0.0, 0.0), (5.0, 0.0), 25, carpet):
-            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+            tracker.advance(PERIOD_S, 2.0)
             sighting = eye.look(state[:2], own=True)
             assert sighting is not None
             tracker.see(sighting)
@@ -82,7 +82,7 @@ def test_carpet_outlives_the_ball() -> None:
     tracker = followed(0.75, 6)
     learnt = tracker.track.carpet
     for _ in range(50):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
     assert not tracker.known
     tracker.see(Sighting("me", True, np.zeros(2), np.eye(2) * 0.01**2))
     assert tracker.track.carpet[0] == pytest.approx(learnt[0], abs=0.05)
@@ -92,7 +92,7 @@ def test_robot_that_errs_about_its_place_moves_no_ball() -> None:
     """Two robots see a resting ball at one place, by turns with a third, whose place is wrong by half a metre."""
     tracker, speeds_m_s = BallTracker(), []
     for frame in range(60):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.advance(PERIOD_S, 2.0)
         if frame % 2 == 0:
             tracker.see(Sighting("a", False, np.zeros(2), np.eye(2) * 0.05**2))
             tracker.see(Sighting("b", False, np.zeros(2), np.eye(2) * 0.05**2))
@@ -115,6 +115,6 @@ def test_walls_stand_at_the_border_of_the_field() -> None:
 )
 def test_ball_is_near_walls_and_posts_only(place_m: tuple[float, float], near: bool) -> None:
     tracker = BallTracker()
-    tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    tracker.advance(PERIOD_S, 2.0)
     tracker.hold("me", np.array((*place_m, 0.0, 0.0)), np.eye(4) * 1e-6)
     assert Walls.of(Field(), BALL).near(tracker.track, PERIOD_S) is near

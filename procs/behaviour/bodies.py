@@ -1,0 +1,42 @@
+"""Sizes of the robots and the ball, and the ball's friction, as behaviour needs them."""
+
+from typing import NamedTuple
+
+from procs.model.ball import BALL, BallModel
+from procs.model.robot import ROBOT, RobotModel
+
+
+class Bodies(NamedTuple):
+    """Measures of the robots, which are all equal, and of the ball; computed once from the settings."""
+
+    robot_radius_m: float
+    robot_height_m: float
+    ball_radius_m: float
+    held_ball_m: float
+    """From the middle of a robot to the middle of the ball in its mouth."""
+    beside_m: float
+    """From the middle of a robot to the middle of a ball that just passes it."""
+    sliding_m_s2: float
+    """Deceleration of the sliding ball."""
+    rolling_m_s2: float
+    """Deceleration of the rolling ball."""
+    rolling_share: float
+    """Share of a kick's speed that is left when the ball begins to roll."""
+
+    @classmethod
+    def of(cls, robot: RobotModel, ball: BallModel) -> "Bodies":
+        """Returns the measures of such robots and such a ball."""
+        return cls(
+            robot.radius_m,
+            robot.height_m,
+            ball.radius_m,
+            held_ball_m=robot.held_ball_m(ball),
+            beside_m=robot.radius_m + ball.radius_m,
+            sliding_m_s2=ball.sliding_m_s2,
+            rolling_m_s2=ball.rolling_m_s2,
+            rolling_share=ball.rolling_share,
+        )
+
+
+USUAL = Bodies.of(ROBOT, BALL)
+"""The usual robots and the usual ball."""
