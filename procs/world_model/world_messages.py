@@ -15,7 +15,9 @@ from lcmtypes.soccer import (
     world_model_t,
 )
 from procs.model.geometry import plausible
+from procs.model.units import US_PER_S
 from procs.world_model.ball_tracker import BallTracker
+from procs.world_model.kicks import Kick
 from procs.world_model.own_view import OwnView
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
@@ -84,6 +86,13 @@ def fill_ball(message: team_message_t, belief: ball_estimate_t, confidence: floa
     message.ball_known = belief.known
     message.ball_vx_m_s, message.ball_vy_m_s = (belief.vx_m_s, belief.vy_m_s) if belief.known else (0.0, 0.0)
     message.ball_confidence = confidence if message.ball_visible and _is_share(confidence) else 0.0
+
+
+def fill_kick(message: team_message_t, kick: Kick, kicks: int, now_us: int) -> None:
+    """Fills in the newest own kick; `kicks` is its number."""
+    message.kicks, message.kick_us = kicks, now_us - round(kick.age_s * US_PER_S)
+    message.kick_vx_m_s, message.kick_vy_m_s = kick.velocity_m_s.tolist()
+    message.kick_vz_m_s = kick.lift_m_s
 
 
 def _is_share(value: float) -> bool:

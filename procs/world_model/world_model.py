@@ -5,7 +5,6 @@ messages; opponents from obstacles that the robot and its mates see and that are
 does not know its place is left out. While the robot itself does not know its place, only its mates' sightings count.
 """
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -32,20 +31,19 @@ from procs.model.units import US_PER_S
 from procs.world_model.ball_track import Sighting, Walls
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.contact import touch_probability
+from procs.world_model.kicks import Kicks
 from procs.world_model.opponents import OpponentSettings, strangers
 from procs.world_model.own_view import OwnView
+from procs.world_model.possession import holder_of
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
 from procs.world_model.team import Mate, PlaceRow, Places, Team
-from procs.world_model.told import ball_of, held_by, mate_of, mouth_of, obstacles_of
-from procs.world_model.world_messages import fill_ball, fill_plan, fill_team_message, fill_world_model
+from procs.world_model.told import ball_of, held_by, mate_of, obstacles_of
+from procs.world_model.world_messages import fill_ball, fill_kick, fill_plan, fill_team_message, fill_world_model
 
 _STALE_S = 0.5  # older sightings of mates are not used
-_HOLDER_S = 0.3  # a mate's word that it holds the ball is believed for so long
-_KICK_MESSAGES = 2  # tell mates of a kick, in this tick and the next, as radio may lose one
 _IN_MOUTH_M2 = np.eye(2) * 0.03**2
 """Covariance of a ball somewhere in the mouth."""
-_NEAR_M = 0.9  # the wall or an opponent this near to the ball may touch it
 
 
 class WorldModelConfig(Config):
@@ -116,9 +114,7 @@ class WorldModel(Component):
         self._team = Team()
         self._view: OwnView | None = None
         self._held = False
-        self._kicks = 0
-        self._kick_messages = 0  # that are due for the newest kick
-        self._mates_kicks: dict[str, int] = {}
+        self._kicks = Kicks()
         self._last_us = 0
         self._sent_us = -US_PER_S  # the first message is due at once
         self._untold_ball = self._untold_obstacles = Seen.NOTHING  # own sightings since the last message
@@ -137,7 +133,9 @@ class WorldModel(Component):
         self._follow_ball(view, places, told, passed_s)
         self._follow_opponents(view, team, len(mates), told, passed_s)
         fill_world_model(self.world_model.value, view, self._ball, mates, places, self._opponents, now_s)
-        self.world_model.value.ball_holder = self._holder(mates)
+        holds = bool(self.kicker_state.value.ball_held)
+        holder = holder_of(self.world_model.value, self._robot, holds, mates, now_s, self._mouth_m)
+        self.world_model.value.ball_holder = holder
         if not config.use_ball_velocity:
             self.world_model.value.ball.vx_m_s = self.world_model.value.ball.vy_m_s = 0.0
         self.world_model.write()
@@ -169,18 +167,12 @@ class WorldModel(Component):
         self, view: OwnView, team: Sequence[PlaceRow], told: list[tuple[team_message_t, Mate]], passed_s: float
     ) -> None:
         config, kicker = self.config, self.kicker_state.value
-        kicked = kicker.kicks != self._kicks and plausible(kicker.kick_speed_m_s)
-        self._kicks = kicker.kicks
+        kicked = self._kicks.own(kicker, view, self._mouth_m, passed_s)
         if kicked:
-            self._kick_messages = _KICK_MESSAGES
-            velocity_m_s = view.kicked_m_s(kicker.kick_speed_m_s, self._mouth_m)
-            lift_m_s = _lift_m_s(kicker)
-            self._ball.kick(velocity_m_s, -passed_s / 2, lift_m_s=lift_m_s)  # at an unknown moment since the last tick
-            message = self.team_message.value
-            message.kicks, message.kick_us = kicker.kicks, self.clock.now_us - round(passed_s / 2 * US_PER_S)
-            message.kick_vx_m_s, message.kick_vy_m_s = velocity_m_s.tolist()
-            message.kick_vz_m_s = lift_m_s
-        self._take_mates_kicks(told, passed_s)
+            fill_kick(self.team_message.value, kicked, kicker.kicks, self.clock.now_us)
+        kicks = self._kicks.of_mates(told, self.clock.now_us, self._mouth_m)
+        for kick in [kicked, *kicks] if kicked else kicks:
+            self._ball.kick(kick.velocity_m_s, kick.age_s - passed_s, kick.mouth, kick.lift_m_s)
         contact = self._contact(team, passed_s)
         self._ball.advance(passed_s, config.ball_timeout_s, contact=contact, walls=self._walls)
         if kicker.ball_held and view.localized and not kicked:
@@ -188,6 +180,11 @@ class WorldModel(Component):
         self._held = kicker.ball_held
         if self.ball_percept.refreshed:
             self._look_for_ball(view, self.ball_percept.value)
+        self._take_mates_ball(told)
+
+    def _take_mates_ball(self, told: list[tuple[team_message_t, Mate]]) -> None:
+        """Takes the ball that mates see, and the one in the mouth of a mate."""
+        config = self.config
         for message, mate in told:
             seen = ball_of(message).widened(config.team_correlation, 1.0)
             age_s = self._age_s(message.ball_capture_us or message.header.time_us)
@@ -246,17 +243,6 @@ class WorldModel(Component):
         if sightings:
             self._ball.see(*sightings)
 
-    def _take_mates_kicks(self, told: list[tuple[team_message_t, Mate]], passed_s: float) -> None:
-        for message, mate in told:
-            known = self._mates_kicks.get(mate.name, message.kicks)
-            self._mates_kicks[mate.name] = message.kicks
-            age_s = self.clock.since_s(message.kick_us)
-            sound = plausible(message.kick_vx_m_s, message.kick_vy_m_s, message.kick_vz_m_s)
-            if message.kicks != known and sound and 0.0 <= age_s <= _STALE_S:
-                mouth = mouth_of(mate, self._mouth_m, message.kick_us / US_PER_S)
-                velocity_m_s = np.array((message.kick_vx_m_s, message.kick_vy_m_s))
-                self._ball.kick(velocity_m_s, age_s - passed_s, mouth, message.kick_vz_m_s)
-
     def _follow_opponents(
         self, view: OwnView, team: Places, mates: int, told: list[tuple[team_message_t, Mate]], passed_s: float
     ) -> None:
@@ -278,25 +264,6 @@ class WorldModel(Component):
                 seen = strangers(seen, team, now_s - age_s, rules)
                 self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
 
-    def _holder(self, mates: list[Mate]) -> str:
-        """Returns the robot of the team that has the ball in its mouth, `?` for an opponent at the ball, or nothing.
-
-        Ball and opponents are those of the message that was just filled in.
-        """
-        if self.kicker_state.value.ball_held:
-            return self._robot
-        for mate in mates:
-            if mate.holds_ball and self.clock.now_s - mate.told_s <= _HOLDER_S:
-                return mate.name
-        ball, opponents = self.world_model.value.ball, self.world_model.value.opponents
-        if ball.known and opponents:
-            nearest_m = min(math.hypot(one.x_m - ball.x_m, one.y_m - ball.y_m) for one in opponents)
-            covariance = ball.covariance
-            near_m = self._mouth_m + 2 * math.sqrt(covariance[0][0] + covariance[1][1])
-            if nearest_m < min(_NEAR_M, near_m):
-                return "?"
-        return ""
-
     def _message_due(self) -> bool:
         """Returns whether to send now: about once a period, and rather in a tick with a new sighting.
 
@@ -304,7 +271,7 @@ class WorldModel(Component):
         tick for it; from then on messages keep its pace, and mates hear of a sighting as soon as they can.
         """
         caught_or_lost = self.team_message.value.ball_held != self.kicker_state.value.ball_held
-        if caught_or_lost or self._kick_messages:
+        if caught_or_lost or self._kicks.untold:
             return True  # mates have to know at once
         half_tick_s = self.clock.period_s / 2
         passed_s = self.clock.since_s(self._sent_us) + half_tick_s
@@ -330,7 +297,7 @@ class WorldModel(Component):
         )
         self._untold_ball = self._untold_obstacles = Seen.NOTHING
         self._sent_us = self.clock.now_us
-        self._kick_messages = max(0, self._kick_messages - 1)
+        self._kicks.note_message()
         self.team_message.write()
 
     def _age_s(self, capture_us: int) -> float:
@@ -345,9 +312,3 @@ class WorldModel(Component):
             deviation_m=config.obstacle_deviation_m,
             mate_radius_m=config.mate_radius_m,
         )
-
-
-def _lift_m_s(kicker: kicker_state_t) -> float:
-    """Returns the velocity upwards that the newest kick gave to the ball; 0 if the hardware tells no elevation."""
-    elevation_rad = kicker.kick_elevation_rad
-    return kicker.kick_speed_m_s * math.tan(elevation_rad) if 0.0 < elevation_rad < math.pi / 2 else 0.0

@@ -1,0 +1,80 @@
+"""Kicks that a robot knows of: its own, which its mates have to hear of, and those that mates tell."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from lcmtypes.robot import kicker_state_t
+from lcmtypes.soccer import team_message_t
+from procs.model.frames import Floats
+from procs.model.geometry import plausible
+from procs.model.units import US_PER_S
+from procs.world_model.own_view import OwnView
+from procs.world_model.seen import Seen
+from procs.world_model.team import Mate
+from procs.world_model.told import mouth_of
+
+_MESSAGES = 2  # tell mates of a kick, in this tick and the next, as radio may lose one
+_OLDEST_S = 0.5  # older kicks of mates are not used
+
+
+@dataclass(frozen=True)
+class Kick:
+    """Kick of the ball."""
+
+    velocity_m_s: Floats
+    """Velocity (2) that the ball got, world frame."""
+    lift_m_s: float
+    """Velocity upwards that the ball got."""
+    age_s: float
+    """Time since the kick."""
+    mouth: Seen = Seen.NOTHING
+    """Place of the ball at the kick (0 or 1), if a mate kicked it."""
+
+
+class Kicks:
+    """Kicks of a robot and its mates; each kick is returned once."""
+
+    def __init__(self) -> None:
+        self._own = 0
+        self._of_mates: dict[str, int] = {}
+        self._messages = 0
+
+    @property
+    def untold(self) -> bool:
+        """Whether another message to the team has to tell of the newest own kick."""
+        return self._messages > 0
+
+    def note_message(self) -> None:
+        """Notes that a message to the team tells of the newest own kick."""
+        self._messages = max(0, self._messages - 1)
+
+    def own(self, kicker: kicker_state_t, view: OwnView, mouth_m: float, passed_s: float) -> Kick | None:
+        """Returns the robot's own new kick, if there is one, at the middle of the `passed_s` since the last tick."""
+        known, self._own = self._own, kicker.kicks
+        if kicker.kicks == known or not plausible(kicker.kick_speed_m_s):
+            return None
+        self._messages = _MESSAGES
+        return Kick(view.kicked_m_s(kicker.kick_speed_m_s, mouth_m), _lift_m_s(kicker), passed_s / 2)
+
+    def of_mates(self, told: Iterable[tuple[team_message_t, Mate]], now_us: int, mouth_m: float) -> list[Kick]:
+        """Returns the new kicks in messages of mates; `mouth_m` is from a robot's middle to a held ball's."""
+        found = []
+        for message, mate in told:
+            known = self._of_mates.get(mate.name, message.kicks)
+            self._of_mates[mate.name] = message.kicks
+            age_s = (now_us - message.kick_us) / US_PER_S
+            sound = plausible(message.kick_vx_m_s, message.kick_vy_m_s, message.kick_vz_m_s)
+            if message.kicks != known and sound and 0.0 <= age_s <= _OLDEST_S:
+                mouth = mouth_of(mate, mouth_m, message.kick_us / US_PER_S)
+                velocity_m_s = np.array((message.kick_vx_m_s, message.kick_vy_m_s))
+                found.append(Kick(velocity_m_s, message.kick_vz_m_s, age_s, mouth))
+        return found
+
+
+def _lift_m_s(kicker: kicker_state_t) -> float:
+    """Returns the velocity upwards that the newest kick gave to the ball; 0 if the hardware tells no elevation."""
+    elevation_rad = kicker.kick_elevation_rad
+    return kicker.kick_speed_m_s * math.tan(elevation_rad) if 0.0 < elevation_rad < math.pi / 2 else 0.0
