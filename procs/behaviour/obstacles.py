@@ -38,7 +38,7 @@ def discs(model: world_model_t, field: Field, bodies: Bodies, avoid_robots: bool
         Disc(post, robot_m + field.post_diameter_m / 2 + 0.03) for side in SIDES for post in field.goal_posts(side)
     ]
     if avoid_robots:
-        found += _robots(model.mates, own, robot_m) + _robots(model.opponents, own, robot_m)
+        found += _robots([*model.mates, *_strangers(model)], own, robot_m)
     if avoid_ball and model.ball.known and plausible(model.ball.x_m, model.ball.y_m):
         ball = Point(model.ball.x_m, model.ball.y_m)
         found.append(Disc(ball, robot_m + bodies.ball_radius_m + _BALL_MARGIN_M))
@@ -70,7 +70,12 @@ def movers(
     Of two mates the one with the higher number gives way.
     """
     mates = [_mover(mate, latency_s, number_of_mate(mate, players) > own_number) for mate in model.mates if _sane(mate)]
-    return mates + [_mover(opponent, latency_s, False) for opponent in model.opponents if _sane(opponent)]
+    return mates + [_mover(other, latency_s, False) for other in _strangers(model) if _sane(other)]
+
+
+def _strangers(model: world_model_t) -> list[robot_estimate_t]:
+    """Returns the robots that tell nothing: opponents, and mates that are only seen."""
+    return [*model.opponents, *model.silent_mates]
 
 
 def _mover(robot: _Estimate, latency_s: float, gives_way: bool) -> Mover:

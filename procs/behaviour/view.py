@@ -83,13 +83,15 @@ class View(NamedTuple):
     ball: Ball
     mates: tuple[Robot, ...] = ()
     opponents: tuple[Robot, ...] = ()
+    silent_mates: tuple[Robot, ...] = ()
+    """Mates that are seen, but do not tell their names and places."""
     bodies: Bodies = USUAL
     """Sizes of the robots and the ball, and the ball's friction."""
 
     @property
     def others(self) -> tuple[Robot, ...]:
         """All robots but the own one."""
-        return (*self.mates, *self.opponents)
+        return (*self.mates, *self.opponents, *self.silent_mates)
 
     def without(self, robots: Container[str]) -> "View":
         """Returns the view without mates that take no part in the game."""
@@ -124,7 +126,8 @@ def view_of(
             for mate in model.mates
             if mate.age_s <= mate_timeout_s and _sane(mate) and plausible(mate.heading_rad)
         ),
-        tuple(_opponent(other, frame) for other in model.opponents if _sane(other)),
+        tuple(_stranger(other, frame) for other in model.opponents if _sane(other)),
+        tuple(_stranger(other, frame) for other in model.silent_mates if _sane(other)),
         bodies,
     )
 
@@ -157,6 +160,6 @@ def _mate(mate: mate_estimate_t, frame: Frame, number: int) -> Robot:
     )
 
 
-def _opponent(robot: robot_estimate_t, frame: Frame) -> Robot:
+def _stranger(robot: robot_estimate_t, frame: Frame) -> Robot:
     place, velocity_m_s = frame.point(robot.x_m, robot.y_m), frame.point(robot.vx_m_s, robot.vy_m_s)
     return Robot("", place, velocity_m_s=velocity_m_s)

@@ -1,9 +1,11 @@
 """The robot's own pose and velocity, and its percepts in the world frame."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from lcmtypes.robot import odometry_t
-from lcmtypes.soccer import ball_candidate_t, ball_percept_t, obstacle_percepts_t, pose_t
+from lcmtypes.soccer import ball_candidate_t, ball_percept_t, obstacle_percepts_t, obstacle_t, pose_t
 from procs.model.frames import Floats, rotation, to_world, wrap
 from procs.model.geometry import plausible
 from procs.world_model.seen import Seen
@@ -63,12 +65,16 @@ class OwnView:
     def _candidate(self, ball: ball_percept_t | ball_candidate_t, age_s: float) -> Seen:
         return self._from_here(Seen.of([(ball.x_m, ball.y_m)], [ball.covariance_m2], [0.0]), age_s)
 
-    def obstacles(self, percepts: obstacle_percepts_t, age_s: float, team: int) -> Seen:
-        """Returns the obstacles of percepts captured `age_s` ago, without robots that show the colour of a team.
+    def obstacles(self, percepts: obstacle_percepts_t, age_s: float, team: int) -> tuple[Seen, Seen]:
+        """Returns the obstacles of percepts captured `age_s` ago, and apart the robots that show the colour of a team.
 
-        `team` is its number; 0 leaves out none.
+        `team` is its number; 0 if it is not known.
         """
-        seen = [one for one in percepts.obstacles if not team or one.team != team]
+        mates = [one for one in percepts.obstacles if one.team == team] if team else []
+        others = [one for one in percepts.obstacles if one.team != team] if mates else percepts.obstacles
+        return self._obstacles(others, age_s), self._obstacles(mates, age_s)
+
+    def _obstacles(self, seen: Sequence[obstacle_t], age_s: float) -> Seen:
         if not (seen and self.localized):
             return Seen.NOTHING
         places_m = [(one.x_m, one.y_m) for one in seen]

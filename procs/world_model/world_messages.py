@@ -31,6 +31,7 @@ def fill_world_model(
     mates: Sequence[Mate],
     team: Sequence[PlaceRow],
     opponents: RobotTracks,
+    silent: RobotTracks,
     now_s: float,
 ) -> None:
     """Fills in the beliefs of the robot at `now_s`; the first of the team then are the mates."""
@@ -40,7 +41,8 @@ def fill_world_model(
     message.ball = _ball(ball)
     rows = zip(mates, team[: len(mates)], strict=True)
     message.mates = [_mate(mate, place, now_s) for mate, place in rows]
-    message.opponents = _opponents(opponents)
+    message.opponents = _robots(opponents)
+    message.silent_mates = _robots(silent) if len(silent) else []
 
 
 def fill_team_message(message: team_message_t, view: OwnView, ball: Seen, obstacles: Seen) -> None:
@@ -126,11 +128,11 @@ def _mate(mate: Mate, place: PlaceRow, now_s: float) -> mate_estimate_t:
     return estimate
 
 
-def _opponents(opponents: RobotTracks) -> list[robot_estimate_t]:
+def _robots(tracks: RobotTracks) -> list[robot_estimate_t]:
     """Returns the tracks that are no ghosts."""
-    states, covariances_m2 = opponents.states.tolist(), opponents.covariances[:, :2, :2].tolist()
-    ages_s, estimates = opponents.ages_s.tolist(), []
-    for track in opponents.sure.tolist():
+    states, covariances_m2 = tracks.states.tolist(), tracks.covariances[:, :2, :2].tolist()
+    ages_s, estimates = tracks.ages_s.tolist(), []
+    for track in tracks.sure.tolist():
         estimate = robot_estimate_t()
         estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s = states[track]
         estimate.covariance_m2, estimate.age_s = covariances_m2[track], ages_s[track]

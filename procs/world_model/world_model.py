@@ -111,6 +111,7 @@ class WorldModel(Component):
         self._ball = BallTracker(self.config.ball)
         self._apply_settings()
         self._opponents = RobotTracks()
+        self._silent = RobotTracks()  # mates that do not tell their places
         self._team = Team()
         self._view: OwnView | None = None
         self._held = False
@@ -132,7 +133,8 @@ class WorldModel(Component):
         places = team.rows_at(now_s)
         self._follow_ball(view, places, told, passed_s)
         self._follow_opponents(view, team, len(mates), told, passed_s)
-        fill_world_model(self.world_model.value, view, self._ball, mates, places, self._opponents, now_s)
+        robots = self._opponents, self._silent
+        fill_world_model(self.world_model.value, view, self._ball, mates, places, *robots, now_s)
         holds = bool(self.kicker_state.value.ball_held)
         holder = holder_of(self.world_model.value, self._robot, holds, mates, now_s, self._mouth_m)
         self.world_model.value.ball_holder = holder
@@ -209,12 +211,14 @@ class WorldModel(Component):
         flight = self._ball.flight
         if flight is not None and flight.height_m > self.config.robot.height_m:
             return 0.0
-        track, rivals = self._ball.track, self._opponents
+        track = self._ball.track
         if self._walls.near(track, passed_s):
             return 1.0
-        robots = [row[:4] for row in team] + rivals.states.tolist()
+        robots = [row[:4] for row in team]
         variances_m2 = [(row[4] + row[7]) / 2 for row in team]
-        variances_m2 += ((rivals.covariances[:, 0, 0] + rivals.covariances[:, 1, 1]) / 2).tolist()
+        for tracks in filter(len, (self._opponents, self._silent)):
+            robots += tracks.states.tolist()
+            variances_m2 += ((tracks.covariances[:, 0, 0] + tracks.covariances[:, 1, 1]) / 2).tolist()
         return touch_probability(track, robots, variances_m2, self._mouth_m, passed_s)
 
     def _look_for_ball(self, view: OwnView, percept: ball_percept_t) -> None:
@@ -248,12 +252,15 @@ class WorldModel(Component):
     ) -> None:
         """Takes the obstacles of the own camera and of mates; the first `mates` robots of the team are the others."""
         config, rules, now_s = self.config, self._rules, self.clock.now_s
-        self._opponents.predict(passed_s, config.opponent_timeout_s)
+        for tracks in filter(len, (self._opponents, self._silent)):
+            tracks.predict(passed_s, config.opponent_timeout_s)
         if self.obstacle_percepts.refreshed:
             percepts = self.obstacle_percepts.value
             age_s = self._age_s(percepts.capture_us)
-            seen = strangers(view.obstacles(percepts, age_s, self._own_team), team.first(mates), now_s - age_s, rules)
-            self._untold_obstacles = seen
+            others, own_colour = view.obstacles(percepts, age_s, self._own_team)
+            seen = self._untold_obstacles = strangers(others, team.first(mates), now_s - age_s, rules)
+            silent = strangers(own_colour, team.first(mates), now_s - age_s, rules)
+            self._silent.see(silent.positions_m, silent.covariances_m2, age_s)
             self.team_message.value.obstacles_capture_us = percepts.capture_us or self.clock.now_us
             seen = seen.widened(config.sight_correlation, config.pose_correlation)
             self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)

@@ -6,9 +6,10 @@ from typing import Any
 import pytest
 
 from lcmtypes.soccer import mate_estimate_t, pass_agreement_t, robot_estimate_t, world_model_t
-from procs.behaviour.obstacles import movers
+from procs.behaviour.bodies import USUAL
+from procs.behaviour.obstacles import discs, movers
 from procs.behaviour.view import Agreement, Frame, View, view_of
-from procs.model.field import Point
+from procs.model.field import Field, Point
 
 
 def seen(turned: bool = False, **lists: Any) -> View:
@@ -47,6 +48,15 @@ def test_opponent_with_an_implausible_value_is_left_out(field: str) -> None:
     assert seen(opponents=[opponent]).opponents == ()
 
 
-def test_opponent_never_gives_way() -> None:
-    model = world_model_t(opponents=[robot_estimate_t(x_m=2.0, vx_m_s=-2.0)])
+@pytest.mark.parametrize("who", ["opponents", "silent_mates"])
+def test_robot_that_tells_nothing_never_gives_way(who: str) -> None:
+    model = world_model_t()
+    setattr(model, who, [robot_estimate_t(x_m=2.0, vx_m_s=-2.0)])
     assert [each.gives_way for each in movers(model, 0.1)] == [False]
+    assert [disc.middle.y_m for disc in discs(model, Field(), USUAL, True, False)] == [0.0]
+
+
+def test_silent_mate_is_in_the_way_but_no_player() -> None:
+    view = seen(silent_mates=[robot_estimate_t(x_m=2.0), robot_estimate_t(x_m=math.nan)])
+    assert (view.mates, view.opponents) == ((), ())
+    assert [robot.place for robot in view.others] == [Point(2.0, 0.0)]

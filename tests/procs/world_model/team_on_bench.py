@@ -90,11 +90,20 @@ class TeamOnBench:
         settings: dict[str, Any] = {"loss": 0.0, "delay_jitter_s": 0.0, **radio}
         self.radio = Bench(Radio, "team_cyan/radio", namespaces=names, **settings)
 
-    def tick(self, ball_m: Floats | None, blind: tuple[str, ...] = (), others_m: tuple[Floats, ...] = ()) -> None:
-        """Runs a tick of all robots, which see each other and `others_m`; the `blind` ones do not see the ball."""
+    def tick(
+        self,
+        ball_m: Floats | None,
+        blind: tuple[str, ...] = (),
+        others_m: tuple[Floats, ...] = (),
+        teams: tuple[int, ...] = (),
+    ) -> None:
+        """Runs a tick of all robots, which see each other and `others_m`; the `blind` ones do not see the ball.
+
+        `teams` are those that the markers of the first robots show which a robot sees.
+        """
         for robot in self.robots:
             around = [other.pose[:2] for other in self.robots if other is not robot] + list(others_m)
-            robot.sense(None if robot.name in blind else ball_m, around)
+            robot.sense(None if robot.name in blind else ball_m, around, teams=teams)
             robot.bench.iterate()
             for message in robot.bench.port("team_message").sent:
                 self.radio.port("messages", robot.name).put(message)

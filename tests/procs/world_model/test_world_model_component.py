@@ -1,11 +1,12 @@
 """World models of a team on the bench: frames, sources, honesty, opponents, impossible input."""
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 import pytest
 
-from lcmtypes.soccer import obstacle_t, team_message_t
+from lcmtypes.soccer import obstacle_t, robot_estimate_t, team_message_t
 from procs.world_model.seen import Seen
 from tests.procs.world_model.team_on_bench import PERIOD_S, Floats, Robot, team
 
@@ -46,13 +47,29 @@ def test_opponents_contain_neither_mates_nor_oneself() -> None:
             assert np.hypot(*(places - opponent).T).min() < 0.25
 
 
-def test_robot_in_the_own_colour_is_no_opponent() -> None:
-    """A mate whose radio is broken tells no place, but shows its marker."""
+def places(estimates: Iterable[robot_estimate_t]) -> list[tuple[float, float]]:
+    return [(one.x_m, one.y_m) for one in estimates]
+
+
+def test_robot_in_the_own_colour_is_a_silent_mate() -> None:
+    """A mate whose radio is broken, or that is lost, tells no place, but shows its marker."""
     robot = Robot("cyan1", (2.0, 1.0, math.pi / 2), seed=1)
     for _ in range(20):
         robot.sense(None, [np.array((0.0, 1.0)), np.array((2.0, 3.0))], teams=(1, 2))
         robot.bench.iterate()
-    assert [(one.x_m, one.y_m) for one in robot.world.opponents] == [pytest.approx((2.0, 3.0), abs=0.08)]
+    assert places(robot.world.opponents) == [pytest.approx((2.0, 3.0), abs=0.08)]
+    assert places(robot.world.silent_mates) == [pytest.approx((0.0, 1.0), abs=0.08)]
+
+
+def test_mate_that_tells_its_place_is_not_silent() -> None:
+    four = team()
+    own, mate = four.robots[:2]
+    for localized in (False, True):
+        mate.localized = localized
+        for _ in range(20):
+            four.tick(None, teams=(1, 1, 1))
+        assert [one.name for one in own.world.mates].count(mate.name) == localized
+        assert len(own.world.silent_mates) == (not localized)
 
 
 def test_held_ball_is_in_the_mouth_and_in_the_message() -> None:
