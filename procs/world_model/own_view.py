@@ -1,5 +1,6 @@
 """The robot's own pose and velocity, and its percepts in the world frame."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,7 +10,7 @@ from lcmtypes.soccer import ball_candidate_t, ball_percept_t, obstacle_percepts_
 from procs.model.frames import Floats, rotation, to_world, wrap
 from procs.model.geometry import plausible
 from procs.world_model.seen import Seen
-from procs.world_model.team import Mate
+from procs.world_model.team import Mate, PlaceRow
 
 _FASTEST = (8.0, 8.0, 15.0)  # m/s, m/s, rad/s: a pose that changes faster was corrected
 _ROLLS_IN_M_S = 0.5  # a slower ball is as good as held
@@ -65,14 +66,36 @@ class OwnView:
     def _candidate(self, ball: ball_percept_t | ball_candidate_t, age_s: float) -> Seen:
         return self._from_here(Seen.of([(ball.x_m, ball.y_m)], [ball.covariance_m2], [0.0]), age_s)
 
-    def obstacles(self, percepts: obstacle_percepts_t, age_s: float, team: int) -> tuple[Seen, Seen]:
-        """Returns the obstacles of percepts captured `age_s` ago, and apart the robots that show the colour of a team.
+    def obstacles(self, percepts: obstacle_percepts_t, age_s: float, team: int) -> Seen:
+        """Returns the obstacles of percepts captured `age_s` ago, without robots that show the colour of a team.
 
-        `team` is its number; 0 if it is not known.
+        `team` is its number; 0 leaves out none.
         """
-        mates = [one for one in percepts.obstacles if one.team == team] if team else []
-        others = [one for one in percepts.obstacles if one.team != team] if mates else percepts.obstacles
-        return self._obstacles(others, age_s), self._obstacles(mates, age_s)
+        return self._obstacles([one for one in percepts.obstacles if not team or one.team != team], age_s)
+
+    def mates(
+        self, percepts: obstacle_percepts_t, age_s: float, team: int, known: Sequence[PlaceRow], within_m: float
+    ) -> Seen:
+        """Returns the robots of percepts captured `age_s` ago that show the colour of a team, as far as they are new.
+
+        Args:
+            percepts: the obstacles.
+            age_s: time since their exposure.
+            team: number of the team; 0: not known.
+            known: robots of the team; what is seen near them, and that is nearly all, is left out at little cost.
+            within_m: "near".
+        """
+        seen = [one for one in percepts.obstacles if one.team == team] if team else []
+        if not (seen and self.localized):
+            return Seen.NOTHING
+        x_m, y_m, heading_rad = self.pose.tolist()
+        cos, sin = math.cos(heading_rad), math.sin(heading_rad)
+        new = []
+        for one in seen:
+            at_m = (x_m + cos * one.x_m - sin * one.y_m, y_m + sin * one.x_m + cos * one.y_m)
+            if all(math.dist(at_m, row[:2]) > within_m for row in known):
+                new.append(one)
+        return self._obstacles(new, age_s)
 
     def _obstacles(self, seen: Sequence[obstacle_t], age_s: float) -> Seen:
         if not (seen and self.localized):

@@ -132,7 +132,7 @@ class WorldModel(Component):
         team = Places([*mates, view.as_mate(self._robot, now_s)] if view.localized else mates)
         places = team.rows_at(now_s)
         self._follow_ball(view, places, told, passed_s)
-        self._follow_opponents(view, team, len(mates), told, passed_s)
+        self._follow_robots(view, team, places, len(mates), told, passed_s)
         robots = self._opponents, self._silent
         fill_world_model(self.world_model.value, view, self._ball, mates, places, *robots, now_s)
         holds = bool(self.kicker_state.value.ball_held)
@@ -247,19 +247,30 @@ class WorldModel(Component):
         if sightings:
             self._ball.see(*sightings)
 
-    def _follow_opponents(
-        self, view: OwnView, team: Places, mates: int, told: list[tuple[team_message_t, Mate]], passed_s: float
+    def _follow_robots(
+        self,
+        view: OwnView,
+        team: Places,
+        places: Sequence[PlaceRow],
+        mates: int,
+        told: list[tuple[team_message_t, Mate]],
+        passed_s: float,
     ) -> None:
-        """Takes the obstacles of the own camera and of mates; the first `mates` robots of the team are the others."""
+        """Takes the obstacles of the own camera and of mates; the first `mates` robots of the team are the others.
+
+        `places` are those of the team now.
+        """
         config, rules, now_s = self.config, self._rules, self.clock.now_s
         for tracks in filter(len, (self._opponents, self._silent)):
             tracks.predict(passed_s, config.opponent_timeout_s)
         if self.obstacle_percepts.refreshed:
             percepts = self.obstacle_percepts.value
             age_s = self._age_s(percepts.capture_us)
-            others, own_colour = view.obstacles(percepts, age_s, self._own_team)
-            seen = self._untold_obstacles = strangers(others, team.first(mates), now_s - age_s, rules)
-            silent = strangers(own_colour, team.first(mates), now_s - age_s, rules)
+            known, own = team.first(mates), self._own_team
+            seen = strangers(view.obstacles(percepts, age_s, own), known, now_s - age_s, rules)
+            self._untold_obstacles = seen
+            silent = view.mates(percepts, age_s, own, places[:mates], config.mate_radius_m)
+            silent = strangers(silent, known, now_s - age_s, rules)
             self._silent.see(silent.positions_m, silent.covariances_m2, age_s)
             self.team_message.value.obstacles_capture_us = percepts.capture_us or self.clock.now_us
             seen = seen.widened(config.sight_correlation, config.pose_correlation)
