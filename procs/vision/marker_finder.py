@@ -10,8 +10,8 @@ from procs.model.robot import ROBOT
 from procs.vision.colours import ColourRange, Picture, to_hsv
 from procs.vision.mirror import Mirror
 
-_HEIGHTS_M = (0.38, 0.42, 0.46)  # of the samples; the rules have markers at these heights
-_BESIDE = (-0.4, 0.0, 0.4)  # places of the samples across the body, as shares of its radius
+_UP_M = np.repeat((0.38, 0.42, 0.46), 3)  # heights of the samples; the rules have markers there
+_ACROSS = np.tile((-0.4, 0.0, 0.4), 3)  # places of the samples across the body, as shares of its radius
 _LEAST = 0.5  # share of the samples that must have the colour
 
 
@@ -34,9 +34,8 @@ class MarkerFinder:
         if not places_m:
             return []
         samples = self._samples(np.array(places_m))
-        rows, columns = (
-            np.rint(self.mirror.project(samples.reshape(-1, 3))).astype(int).clip(0, self.mirror.size_px - 1).T[::-1]
-        )
+        places_px = np.rint(self.mirror.project(samples.reshape(-1, 3))).astype(int)
+        columns, rows = np.minimum(np.maximum(places_px, 0), self.mirror.size_px - 1).T
         hsv = to_hsv(pixels[rows, columns].reshape(len(places_m), -1, 3))
         shares = np.stack([np.zeros(len(places_m)), *(colour.mask(hsv).mean(axis=1) for colour in self.colours)])
         shares[0] = _LEAST
@@ -48,9 +47,7 @@ class MarkerFinder:
         ahead = places_m / ranges_m
         aside = np.column_stack((-ahead[:, 1], ahead[:, 0]))
         near_m = places_m - ahead * self.radius_m
-        points = [
-            np.column_stack((near_m + beside * self.radius_m * aside, np.full(len(places_m), height_m)))
-            for height_m in _HEIGHTS_M
-            for beside in _BESIDE
-        ]
-        return np.stack(points, axis=1)
+        points = np.empty((len(places_m), len(_ACROSS), 3))
+        points[:, :, :2] = near_m[:, None] + (_ACROSS * self.radius_m)[:, None] * aside[:, None]
+        points[:, :, 2] = _UP_M
+        return points
