@@ -3,16 +3,16 @@
 import math
 from collections.abc import Iterable, Mapping
 
-from lcmtypes.soccer import mate_estimate_t, robot_estimate_t, world_model_t
+from lcmtypes.soccer import robot_estimate_t, world_model_t
 from procs.behaviour.bodies import Bodies
 from procs.behaviour.identity import number_of_mate
 from procs.behaviour.path import Disc
 from procs.behaviour.velocity_obstacles import Mover
+from procs.behaviour.view import Estimate, is_sane
 from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import clamp, plausible
 from procs.model.robot import PLAYERS, Player
 
-_Estimate = mate_estimate_t | robot_estimate_t
 _MARGIN_M = 0.12
 _GAP_M = 0.06  # between two robots that nearly touch
 _BALL_MARGIN_M = 0.1
@@ -69,8 +69,10 @@ def movers(
 
     Of two mates the one with the higher number gives way.
     """
-    mates = [_mover(mate, latency_s, number_of_mate(mate, players) > own_number) for mate in model.mates if _sane(mate)]
-    return mates + [_mover(other, latency_s, False) for other in _strangers(model) if _sane(other)]
+    mates = [
+        _mover(mate, latency_s, number_of_mate(mate, players) > own_number) for mate in model.mates if is_sane(mate)
+    ]
+    return mates + [_mover(other, latency_s, False) for other in _strangers(model) if is_sane(other)]
 
 
 def _strangers(model: world_model_t) -> list[robot_estimate_t]:
@@ -78,7 +80,7 @@ def _strangers(model: world_model_t) -> list[robot_estimate_t]:
     return [*model.opponents, *model.silent_mates]
 
 
-def _mover(robot: _Estimate, latency_s: float, gives_way: bool) -> Mover:
+def _mover(robot: Estimate, latency_s: float, gives_way: bool) -> Mover:
     return Mover(
         Point(robot.x_m + robot.vx_m_s * latency_s, robot.y_m + robot.vy_m_s * latency_s),
         Point(robot.vx_m_s, robot.vy_m_s),
@@ -87,19 +89,15 @@ def _mover(robot: _Estimate, latency_s: float, gives_way: bool) -> Mover:
     )
 
 
-def _sane(robot: _Estimate) -> bool:
-    return plausible(robot.x_m, robot.y_m, robot.vx_m_s, robot.vy_m_s)
-
-
-def _deviation_m(robot: _Estimate) -> float:
+def _deviation_m(robot: Estimate) -> float:
     (xx_m2, _), (_, yy_m2) = robot.covariance_m2
     return min(_UNSURE_M, math.sqrt(max(0.0, xx_m2, yy_m2)))
 
 
-def _robots(estimates: Iterable[_Estimate], own: Point, robot_m: float) -> list[Disc]:
+def _robots(estimates: Iterable[Estimate], own: Point, robot_m: float) -> list[Disc]:
     found = []
     for robot in estimates:
-        if not _sane(robot):
+        if not is_sane(robot):
             continue
         ahead_s = min(_FORESIGHT_S, math.dist(own, (robot.x_m, robot.y_m)) / _MEETING_M_S)
         middle = Point(robot.x_m + robot.vx_m_s * ahead_s, robot.y_m + robot.vy_m_s * ahead_s)

@@ -15,6 +15,9 @@ from procs.model.field import Point
 from procs.model.geometry import plausible, wrap_rad
 from procs.model.robot import PLAYERS, Player
 
+Estimate = mate_estimate_t | robot_estimate_t
+"""Another robot in the world model."""
+
 
 class Frame(NamedTuple):
     """Turns points and directions between world frame and attack frame; both ways are the same."""
@@ -124,15 +127,16 @@ def view_of(
         tuple(
             _mate(mate, frame, number_of_mate(mate, players))
             for mate in model.mates
-            if mate.age_s <= mate_timeout_s and _sane(mate) and plausible(mate.heading_rad)
+            if mate.age_s <= mate_timeout_s and is_sane(mate) and plausible(mate.heading_rad)
         ),
-        tuple(_stranger(other, frame) for other in model.opponents if _sane(other)),
-        tuple(_stranger(other, frame) for other in model.silent_mates if _sane(other)),
+        tuple(_stranger(other, frame) for other in model.opponents if is_sane(other)),
+        tuple(_stranger(other, frame) for other in model.silent_mates if is_sane(other)),
         bodies,
     )
 
 
-def _sane(robot: mate_estimate_t | robot_estimate_t) -> bool:
+def is_sane(robot: Estimate) -> bool:
+    """Returns whether place and velocity of an estimate are plausible."""
     return plausible(robot.x_m, robot.y_m, robot.vx_m_s, robot.vy_m_s)
 
 

@@ -13,13 +13,13 @@ from procs.model.kinematics import (
     STANDSTILL,
     Velocity,
     Wheels,
-    as_wheels,
     velocity_covariance_of,
     velocity_of,
     wheels_of,
 )
 from procs.model.robot import ROBOT, RobotModel
 from procs.model.units import US_PER_S
+from procs.model.wheel_messages import WheelReader
 
 _PLAUSIBLE = 2.0  # wheels cannot turn faster than their limit times this, even when they are pushed
 _LONGEST_GAP_S = 0.5  # a measurement after a longer silence does not cover the time before
@@ -70,7 +70,7 @@ class Base(Component):
     def init(self) -> None:
         self._odometry = Odometry()
         self._measured_us = 0
-        self._told_wheels = -1  # wrong number of wheels that the log has named
+        self._wheels = WheelReader("wheel_state", "ignored", self.log.error)
         self._late = False
         self._ramp = self._limited(STANDSTILL)
 
@@ -106,24 +106,19 @@ class Base(Component):
         return ramp
 
     def _add(self, state: wheel_state_t) -> None:
-        try:
-            first, second, third = as_wheels(state.measured_m_s)
-        except ValueError as error:
-            if len(state.measured_m_s) != self._told_wheels:  # once, not in every tick
-                self._told_wheels = len(state.measured_m_s)
-                writer = state.header.writer or "an unknown writer"
-                self.log.error(f"wheel_state of {writer} {error}; ignored")
+        wheels_m_s = self._wheels.read(state.measured_m_s, state.header.writer)
+        if wheels_m_s is None:
             return
-        if not all(abs(speed) <= _PLAUSIBLE * self.config.robot.wheel_limit_m_s for speed in state.measured_m_s):
-            self.log.warning(f"wheel speeds {first}, {second}, {third} m/s are impossible; ignored")
+        if not all(abs(speed) <= _PLAUSIBLE * self.config.robot.wheel_limit_m_s for speed in wheels_m_s):
+            self.log.warning(f"wheel speeds {', '.join(map(str, wheels_m_s))} m/s are impossible; ignored")
             return
         passed_s = (state.header.time_us - self._measured_us) / US_PER_S
         self._measured_us = state.header.time_us
         self.odometry.value.capture_us = state.capture_us or state.header.time_us
         if not 0 < passed_s <= _LONGEST_GAP_S:
             passed_s = self.clock.period_s
-        self._odometry.advance(velocity_of((first, second, third), self.config.robot.wheel_distance_m), passed_s)
-        self.odometry.value.velocity_covariance = self._covariance((first, second, third))
+        self._odometry.advance(velocity_of(wheels_m_s, self.config.robot.wheel_distance_m), passed_s)
+        self.odometry.value.velocity_covariance = self._covariance(wheels_m_s)
 
     def _covariance(self, wheels_m_s: Wheels) -> list[list[float]]:
         """Returns the covariance (3, 3) of the velocity by the errors of its wheels, which each measured for a tick."""

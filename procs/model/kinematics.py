@@ -4,7 +4,6 @@ Robot frame: x forward, y left, angles counter-clockwise. A positive rim speed t
 """
 
 import math
-from collections.abc import Sequence
 from typing import NamedTuple
 
 SIN_60 = math.sqrt(3) / 2
@@ -25,22 +24,6 @@ class Velocity(NamedTuple):
 
 
 STANDSTILL = Velocity(0.0, 0.0, 0.0)
-
-
-def as_wheels(values: Sequence[float]) -> Wheels:
-    """Returns the values of a message, one for each wheel.
-
-    Raises:
-        ValueError: there are more or fewer values than wheels.
-    """
-    if len(values) != len(WHEEL_ANGLES_DEG):
-        angles = ", ".join(map(str, WHEEL_ANGLES_DEG))
-        raise ValueError(
-            f"has {len(values)} wheel speeds; this robot has {len(WHEEL_ANGLES_DEG)} wheels, at {angles} degrees from "
-            f"forward, and needs one speed for each, in this order"
-        )
-    first, second, third = values
-    return first, second, third
 
 
 def wheels_of(velocity: Velocity, wheel_distance_m: float) -> Wheels:

@@ -46,7 +46,7 @@ class Referee(Component):
     referee_command: Serves[referee_command_t]
     game_state: Writes[game_state_t]
     match_history: Writes[match_history_t]
-    """Written when a decision is added, and in the first iteration."""
+    """Written in the first iteration, when a decision is added, and every 100 ticks."""
     ball_placement: Writes[ball_placement_t]
 
     def init(self) -> None:

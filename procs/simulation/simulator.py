@@ -21,10 +21,11 @@ from lcmtypes.soccer import (
 )
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
-from procs.model.kinematics import Wheels, as_wheels
+from procs.model.kinematics import Wheels
 from procs.model.realism import Realism
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.units import US_PER_S
+from procs.model.wheel_messages import WheelReader
 from procs.simulation.field_crew import FieldCrew
 from procs.simulation.physics.kick_mechanism import KickerCommand
 from procs.simulation.physics.realism import Changes, noise_of
@@ -128,7 +129,9 @@ class Simulator(Component):
         self._battery_us = -_BATTERY_US  # the first message is due at once
         self._empty: set[str] = set()  # robots whose motors stand because their batteries are empty
         self._placement_id = 0
-        self._told_wheels: dict[str, int] = {}  # robot to the wrong number of wheels that the log has named
+        self._wheels = {
+            robot: WheelReader(f"{robot}/wheel_command", f"{robot} stops", self.log.error) for robot in robots
+        }
         self._spoil_wheels()
 
     def config_changed(self) -> None:
@@ -192,16 +195,7 @@ class Simulator(Component):
 
     def _wanted_m_s(self, robot: str, reader: Reads[wheel_command_t]) -> Wheels:
         """Returns the rim speeds of a command; one for another number of wheels stops the robot."""
-        wanted_m_s = reader.value.wheel_m_s
-        try:
-            wheels_m_s = as_wheels(wanted_m_s)
-        except ValueError as error:
-            if self._told_wheels.get(robot) != len(wanted_m_s):  # once, not in every tick
-                self._told_wheels[robot] = len(wanted_m_s)
-                writer = reader.header.writer or "an unknown writer"
-                self.log.error(f"{robot}/wheel_command of {writer} {error}; {robot} stops")
-            return _STOPPED
-        return wheels_m_s
+        return self._wheels[robot].read(reader.value.wheel_m_s, reader.header.writer) or _STOPPED
 
     def _is_fresh(self, reader: Reads[wheel_command_t] | Reads[kicker_drive_t]) -> bool:
         age_s = self.clock.since_s(reader.header.time_us)

@@ -83,7 +83,7 @@ class OwnView:
             age_s: time since their exposure.
             team: number of the team; 0: not known.
             known: robots of the team; what is seen near them, and that is nearly all, is left out at little cost.
-            within_m: "near".
+            within_m: distance that counts as near.
         """
         seen = [one for one in percepts.obstacles if one.team == team] if team else []
         if not (seen and self.localized):

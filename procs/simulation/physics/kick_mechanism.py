@@ -90,10 +90,10 @@ class Kicker:
 
     def _fire(self, speed_m_s: float, elevation_rad: float) -> Push | None:
         speed_error, direction_error = self._rng.standard_normal(2).tolist()
-        limit_m_s = self._settings.limit_m_s * math.cos(elevation_rad)
-        self._work_j += self.mouth.ball_mass_kg * (min(speed_m_s, limit_m_s) / math.cos(elevation_rad)) ** 2 / 2
+        speed_m_s = min(speed_m_s, self._settings.limit_m_s * math.cos(elevation_rad))
+        self._work_j += self.mouth.ball_mass_kg * (speed_m_s / math.cos(elevation_rad)) ** 2 / 2
         if not self.mouth.holds_ball:
             return None
-        speed_m_s = min(speed_m_s, limit_m_s) * (1 + self._noise.kick_speed_sd * speed_error)
+        speed_m_s *= 1 + self._noise.kick_speed_sd * speed_error
         error_rad = math.radians(self._noise.kick_direction_sd_deg) * direction_error
         return Push(self.mouth.kick(speed_m_s, error_rad), kicked=True, lift_m_s=speed_m_s * math.tan(elevation_rad))

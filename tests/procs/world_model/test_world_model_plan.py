@@ -1,4 +1,4 @@
-"""What a robot tells its team besides its sightings: target, battery, belief about the ball."""
+"""Parts of the message to the team besides sightings: target, battery, belief about the ball."""
 
 import math
 from typing import Any
