@@ -51,7 +51,7 @@ def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: 
 def _set_piece(whistle: Whistle, sight: Sight, state: State, team: Team) -> str:
     if not team:
         return f"a {state.name.lower().replace('_', ' ')} needs a team: cyan or magenta"
-    place, field, ends = sight.ball, whistle.rules.field, whistle.ends
+    place, field, ends = whistle.place(sight.ball), whistle.rules.field, whistle.ends
     made: dict[State, Callable[[], Restart]] = {
         State.KICK_OFF: lambda: restarts.kick_off(team),
         State.FREE_KICK: lambda: restarts.after_foul(place, team.other, field),
@@ -99,7 +99,7 @@ def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
         case "stop":
             whistle.stop(sight.ball)
         case "drop_ball":
-            whistle.interrupt(restarts.dropped_ball(sight.ball, whistle.rules.field), "by hand")
+            whistle.interrupt(restarts.dropped_ball(whistle.place(sight.ball), whistle.rules.field), "by hand")
         case "park":
             for each in sight.robots:
                 whistle.cards.take_out(each, whistle.rules.repair_s)

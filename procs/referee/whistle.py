@@ -61,6 +61,7 @@ class Whistle:
         self.cards = Cards()
         self.shootout: Shootout | None = None
         self.calls: list[Call] = []
+        self._left_at: Point | None = None  # by the ball: where it was when the game was last stopped
         self._changing_ends = False
         self._since_placed_s = 0.0
         self._repeats = 0
@@ -76,6 +77,10 @@ class Whistle:
         """The set piece at hand."""
         return Restart(self.state, self.team, self.spot)
 
+    def place(self, ball: Point) -> Point:
+        """Returns the place to which a set piece by hand belongs: where play was stopped, or else where the ball is."""
+        return self._left_at if self.stopped and self._left_at else ball
+
     def step(self, duration_s: float, sight: Sight) -> None:
         """Runs one tick of `duration_s`."""
         self.calls = []
@@ -89,6 +94,7 @@ class Whistle:
                 self.begin_half(halves.after(self.half, self.score, self.rules) or halves.SECOND)
             return
         self.time_in_half_s += duration_s
+        self._remember(sight.ball)
         if not self.rules.automatic:
             self._follow(duration_s, sight)
         elif not self.shootout and self.time_in_half_s >= halves.length_s(self.half, self.rules):
@@ -108,14 +114,15 @@ class Whistle:
         """Begins a half with its kick-off, or the penalties with the first of them."""
         ends = halves.ends_of(half, self.rules)
         self._changing_ends, self.ends = ends != self.ends, ends
-        self.half, self.time_in_half_s = half, 0.0
+        self.half, self.time_in_half_s, self._left_at = half, 0.0, None
         self.shootout = Shootout(self.rules.penalties) if half == halves.PENALTIES else None
         self.interrupt(self._next_penalty() if self.shootout else restarts.kick_off(halves.kicks_off(half)))
 
     def stop(self, ball: Point) -> None:
-        """Stops the game until it is started by hand; from play it goes on with a dropped ball."""
+        """Stops the game until it is started by hand; from play it goes on with a dropped ball where the ball is."""
+        self._remember(ball)
         if self.state is State.PLAY:
-            self.interrupt(restarts.dropped_ball(ball, self.rules.field), "by hand")
+            self.interrupt(restarts.ball_left_there(self._left_at or ball, self.rules.field), "by hand")
         elif self.state not in (State.HALF_TIME, State.FROZEN):
             self._enter(self.state, self.team, stopped=True)
         self.held = True
@@ -290,6 +297,12 @@ class Whistle:
     def _next_penalty(self) -> Restart:
         assert self.shootout
         return restarts.penalty(self.shootout.shooter, self.rules.field, self.ends)
+
+    def _remember(self, ball: Point) -> None:
+        """Remembers where the ball is while the game runs; of a ball that is out, where it was first seen outside."""
+        inside = self.rules.field.in_field
+        if not self.stopped and (self._left_at is None or inside(*self._left_at) or inside(*ball)):
+            self._left_at = ball
 
     def _place(self) -> None:
         self.placements += 1
