@@ -29,6 +29,7 @@ _HALVES = {
     "second_half": halves.SECOND,
     "first_half_overtime": halves.THIRD,
     "second_half_overtime": halves.FOURTH,
+    "penalties": halves.PENALTIES,
 }
 
 

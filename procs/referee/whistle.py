@@ -90,8 +90,8 @@ class Whistle:
         if self.over:
             return
         if self.state is State.HALF_TIME:
-            if self.time_in_state_s >= self.rules.half_time_s:
-                self.begin_half(halves.after(self.half, self.score, self.rules) or halves.SECOND)
+            if self.rules.automatic and self.time_in_state_s >= self.rules.half_time_s:
+                self._end_break()
             return
         self.time_in_half_s += duration_s
         self._remember(sight.ball)
@@ -135,6 +135,13 @@ class Whistle:
         else:
             self.end_match()
 
+    def _end_break(self) -> None:
+        following = halves.after(self.half, self.score, self.rules)
+        if following:
+            self.begin_half(following)
+        else:
+            self.end_match()
+
     def end_match(self) -> None:
         """Ends the match."""
         self._enter(State.FROZEN, Team.NONE, stopped=True)
@@ -173,10 +180,10 @@ class Whistle:
         return misplaced(restart, sight.robots, self.ends, self.rules.field, keeper)
 
     def _follow(self, duration_s: float, sight: Sight) -> None:
-        """Follows a game that is led by hand: set pieces become play."""
+        """Follows a game that is led by hand: set pieces become play, except for penalties that decide the match."""
         if self.stopped:
             self._guard_ball(duration_s, sight)
-        elif self.state is not State.PLAY:
+        elif self.state is not State.PLAY and not self.shootout:
             self._stretch.watch(duration_s, sight, self.ends, self.rules)
             if self._stretch.rolled(sight.ball, self.rules) or self.time_in_state_s >= self.rules.set_piece_s:
                 self._play(sight.ball)

@@ -6,6 +6,7 @@ from procs.model.field import Point
 from procs.referee.orders import carry_out
 from procs.referee.restarts import State
 from procs.referee.sight import Sight
+from procs.simulation.physics.events import Kind
 from tests.procs.referee.script import CYAN, MAGENTA, Script
 
 
@@ -95,3 +96,42 @@ def test_set_piece_is_not_taken_where_another_half_ended() -> None:
     ask(script, "second_half")
     ask(script, "freekick", "cyan")
     assert (script.state[:2], script.whistle.spot) == ((State.FREE_KICK, CYAN), (0.0, 0.0))
+
+
+def test_break_led_by_hand_lasts_until_the_next_half() -> None:
+    script = led_by_hand()
+    ask(script, "half_time")
+    script.wait(60.0)
+    assert (script.state[0], script.whistle.half) == (State.HALF_TIME, 1)
+    assert ask(script, "second_half") == ""
+    assert (script.state, script.whistle.half) == ((State.KICK_OFF, MAGENTA, True), 2)
+
+
+def test_half_led_by_hand_lasts_until_a_command() -> None:
+    script = Script(automatic=False, half_s=5.0, overtime_half_s=5.0, decide=True)
+    for half, command in enumerate(("start", "second_half", "first_half_overtime", "second_half_overtime"), 1):
+        ask(script, command)
+        script.wait(20.0)
+        assert (script.whistle.half, script.state[0] in (State.HALF_TIME, State.FROZEN)) == (half, False)
+
+
+def test_penalty_led_by_hand_lasts_until_a_command() -> None:
+    script = Script(automatic=False, penalties=1)
+    ask(script, "penalties")
+    ask(script, "start")
+    script.touch("cyan2", Kind.KICK)
+    script.goal(11.2, "cyan2")
+    script.wait(60.0)
+    assert (script.state, script.score) == ((State.PENALTY, CYAN, False), (0, 0))
+
+
+def test_break_ends_the_match_if_no_half_follows_any_more() -> None:
+    script = Script(half_s=2.0, half_time_s=1.0, decide=True)
+    ask(script, "goal", "cyan")
+    ask(script, "second_half")
+    ask(script, "goal", "magenta")
+    script.wait(2.0)
+    assert (script.state[0], script.whistle.half) == (State.HALF_TIME, 2)
+    assert ask(script, "subgoal", "magenta") == ""
+    script.wait(1.0)
+    assert (script.state[0], script.score) == (State.FROZEN, (1, 0))
