@@ -73,6 +73,11 @@ class Whistle:
         return self.state is State.FROZEN
 
     @property
+    def at_rest(self) -> bool:
+        """Whether the match has a break, or has ended."""
+        return self.state in (State.HALF_TIME, State.FROZEN)
+
+    @property
     def restart(self) -> Restart:
         """The set piece at hand."""
         return Restart(self.state, self.team, self.spot)
@@ -123,7 +128,7 @@ class Whistle:
         self._remember(ball)
         if self.state is State.PLAY:
             self.interrupt(restarts.ball_left_there(self._left_at or ball, self.rules.field), "by hand")
-        elif self.state not in (State.HALF_TIME, State.FROZEN):
+        elif not self.at_rest:
             self._enter(self.state, self.team, stopped=True)
         self.held = True
 
@@ -167,6 +172,18 @@ class Whistle:
         """Counts a goal."""
         self.score[team] += 1
         self.calls.append(Call(State.KICK_OFF, team, goal=True))
+
+    def end_penalty(self, scored: bool) -> None:
+        """Counts the deciding penalty at hand, and goes on with the next one; ends a match that is decided."""
+        assert self.shootout
+        shooter = self.shootout.shooter
+        self.shootout.shot(scored)
+        if scored:
+            self.goal(shooter)
+        if self.shootout.decided and self.rules.automatic:
+            self.end_half()
+        else:
+            self.interrupt(self._next_penalty(), "" if scored else "missed")
 
     def card(self, robot: str, card: Card) -> None:
         """Shows a card."""
@@ -275,15 +292,8 @@ class Whistle:
         self._stretch.rolled(scene.sight.ball, self.rules)
         late = not scene.touches.robots and self.time_in_state_s >= self.rules.penalty_s
         missed = bool(left) or late or scene.touches.again or self.time_in_state_s >= self.rules.shot_s
-        if not scored and not missed:
-            return
-        self.shootout.shot(scored)
-        if scored:
-            self.goal(self.team)
-        if self.shootout.decided:
-            self.end_half()
-        else:
-            self.interrupt(self._next_penalty(), "" if scored else "missed")
+        if scored or missed:
+            self.end_penalty(scored)
 
     def _give_free_kick(self, foul: Foul) -> None:
         """Interrupts the game for the free kick, or the penalty, that the foul brings."""

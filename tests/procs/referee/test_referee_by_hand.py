@@ -112,7 +112,7 @@ def test_half_led_by_hand_lasts_until_a_command() -> None:
     for half, command in enumerate(("start", "second_half", "first_half_overtime", "second_half_overtime"), 1):
         ask(script, command)
         script.wait(20.0)
-        assert (script.whistle.half, script.state[0] in (State.HALF_TIME, State.FROZEN)) == (half, False)
+        assert (script.whistle.half, script.whistle.at_rest) == (half, False)
 
 
 def test_penalty_led_by_hand_lasts_until_a_command() -> None:
