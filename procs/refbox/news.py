@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 
 from lcmtypes.soccer import game_event_t, game_state_t
-from procs.model.robot import number_of
+from procs.model.robot import number_of, team_of
 from procs.refbox.protocol import Command
 
 TEAMS = {game_state_t.TEAM_CYAN: "cyan", game_state_t.TEAM_MAGENTA: "magenta"}
@@ -19,6 +19,7 @@ _SET_PIECES = {
 _GOALS_MAX = 99
 """A RefBox counts no further."""
 _HALVES = {1: "FIRST_HALF", 2: "SECOND_HALF", 3: "FIRST_HALF_OVERTIME", 4: "SECOND_HALF_OVERTIME"}
+_BREAKS = {game_state_t.HALF_TIME: "HALF_TIME", game_state_t.FROZEN: "END_GAME"}
 _CARDS = {game_event_t.YELLOW: "YELLOW_CARD", game_event_t.DOUBLE_YELLOW: "DOUBLE_YELLOW", game_event_t.RED: "RED_CARD"}
 
 
@@ -27,19 +28,21 @@ def news(
     now: game_state_t,
     events: Sequence[game_event_t] = (),
     number: Callable[[str], int] = number_of,
+    team: Callable[[str], str] = team_of,
 ) -> list[Command]:
     """Returns the commands between two states, in their order; without a state before, those that lead to this one.
 
-    `events` is the history of the match; `number` gives the number on the back of the robot with a namespace.
+    `events` is the history of the match; `number` and `team` give those of the robot with a namespace. A robot that
+    leaves the field without a card is under repair: the states do not tell repair, substitution and parking apart.
     """
     if before is None:
-        return _half(now) + _stopped(now) + ([] if now.stopped else [Command("START")])
+        commands = _half(now) + _robots(game_state_t(), now, events, number, team)
+        return commands + _break(now) + _stopped(now) + ([] if now.stopped else [Command("START")])
     if now.decisions < before.decisions:
-        return [Command("RESET"), *news(None, now)]
-    commands = _scores(before, now) + _cards(events[before.decisions : now.decisions], number)
-    breaks = (game_state_t.HALF_TIME, game_state_t.FROZEN)
-    if now.state != before.state and now.state in breaks:
-        return [*commands, Command("STOP"), Command("HALF_TIME" if now.state == game_state_t.HALF_TIME else "END_GAME")]
+        return [Command("RESET"), *news(None, now, events, number, team)]
+    commands = _robots(before, now, events, number, team)
+    if now.state != before.state and now.state in _BREAKS:
+        return commands + _break(now)
     if now.half != before.half:
         commands += _half(now)
     if now.stopped and _piece(now) != _piece(before):
@@ -51,6 +54,24 @@ def news(
 
 def _piece(state: game_state_t) -> tuple[bool, int, int, float, float]:
     return state.stopped, state.state, state.state_team, state.ball_x_m, state.ball_y_m
+
+
+def _robots(
+    before: game_state_t,
+    now: game_state_t,
+    events: Sequence[game_event_t],
+    number: Callable[[str], int],
+    team: Callable[[str], str],
+) -> list[Command]:
+    """Returns the goals, the cards and the repairs between two states."""
+    newer = events[before.decisions : now.decisions]
+    known = {*before.sent_off, *(event.robot for event in newer if event.card in _CARDS)}
+    repairs = [Command("REPAIR", team(robot), number(robot)) for robot in now.sent_off if robot not in known]
+    return _scores(before, now) + _cards(newer, number) + repairs
+
+
+def _break(now: game_state_t) -> list[Command]:
+    return [Command("STOP"), Command(_BREAKS[now.state])] if now.state in _BREAKS else []
 
 
 def _half(now: game_state_t) -> list[Command]:

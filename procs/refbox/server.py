@@ -7,7 +7,7 @@ from pydantic import Field
 
 from fwk import Component, Config, Logger, Reads, channel
 from lcmtypes.soccer import game_state_t, match_history_t
-from procs.model.robot import PLAYERS, Players, number_of
+from procs.model.robot import PLAYERS, Players, number_of, team_of
 from procs.refbox.news import news
 from procs.refbox.protocol import PORT, Command, encode
 
@@ -32,6 +32,8 @@ class ServerConfig(Config):
 
 class RefBoxServer(Component):
     """Sends each base station what led to the state of the game, then every decision in the tick in which it is made.
+
+    The former is the half, the goals, the cards, the robots off the field, and the break or the set piece at hand.
 
     What base stations say is dropped. One that leaves, or does not read what it is sent, is cut off; no base station
     can hold the game up.
@@ -66,10 +68,10 @@ class RefBoxServer(Component):
         now = self.game_state.value
         self._hear()
         events = self.match_history.value.events
-        self._send(news(self._before, now, events, self._number), list(self._stations))
+        self._send(news(self._before, now, events, self._number, self._team), list(self._stations))
         self._before = now
         newcomers = self._admit()
-        self._send([Command("WELCOME"), *news(None, now)], newcomers)
+        self._send([Command("WELCOME"), *news(None, now, events, self._number, self._team)], newcomers)
 
     def finalize(self) -> None:
         """Closes all connections."""
@@ -80,6 +82,10 @@ class RefBoxServer(Component):
     def _number(self, robot: str) -> int:
         player = self.config.players.get(robot)
         return player.number if player else number_of(robot)
+
+    def _team(self, robot: str) -> str:
+        player = self.config.players.get(robot)
+        return player.team if player else team_of(robot)
 
     def _hear(self) -> None:
         """Drops what base stations say, and notices those that have left."""

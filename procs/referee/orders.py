@@ -8,20 +8,13 @@ from procs.referee import halves, restarts
 from procs.referee.cards import Card
 from procs.referee.ends import Team
 from procs.referee.names import Names
+from procs.referee.refusals import SET_PIECES, why_not
 from procs.referee.restarts import Restart, State
 from procs.referee.sight import Sight
 from procs.referee.whistle import Whistle
 
 _USUAL = Names(PLAYERS)
 _TEAMS = {"": Team.NONE, "cyan": Team.CYAN, "magenta": Team.MAGENTA}
-_SET_PIECES = {
-    "kickoff": State.KICK_OFF,
-    "freekick": State.FREE_KICK,
-    "goalkick": State.GOAL_KICK,
-    "throwin": State.THROW_IN,
-    "corner": State.CORNER_KICK,
-    "penalty": State.PENALTY,
-}
 _CARDS = {"yellow_card": Card.YELLOW, "double_yellow": Card.DOUBLE_YELLOW, "red_card": Card.RED}
 _PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game", "reset")
 _HALVES = {
@@ -29,6 +22,7 @@ _HALVES = {
     "second_half": halves.SECOND,
     "first_half_overtime": halves.THIRD,
     "second_half_overtime": halves.FOURTH,
+    "penalties": halves.PENALTIES,
 }
 
 
@@ -36,8 +30,11 @@ def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: 
     """Carries out a command; returns why it is impossible, or an empty text. `robot` is a namespace."""
     if team not in _TEAMS:
         return f"no team '{team}'; there are cyan, magenta"
-    if name in _SET_PIECES:
-        return _set_piece(whistle, sight, _SET_PIECES[name], _TEAMS[team])
+    refused = why_not(whistle, name, _TEAMS[team])
+    if refused:
+        return refused
+    if name in SET_PIECES:
+        return _set_piece(whistle, sight, SET_PIECES[name], _TEAMS[team])
     if name in ("goal", "subgoal"):
         return _goal(whistle, _TEAMS[team], name == "goal")
     if name in _CARDS or name in ("repair", "substitution"):
@@ -51,7 +48,7 @@ def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: 
 def _set_piece(whistle: Whistle, sight: Sight, state: State, team: Team) -> str:
     if not team:
         return f"a {state.name.lower().replace('_', ' ')} needs a team: cyan or magenta"
-    place, field, ends = sight.ball, whistle.rules.field, whistle.ends
+    place, field, ends = whistle.place(sight.ball), whistle.rules.field, whistle.ends
     made: dict[State, Callable[[], Restart]] = {
         State.KICK_OFF: lambda: restarts.kick_off(team),
         State.FREE_KICK: lambda: restarts.after_foul(place, team.other, field),
@@ -62,20 +59,29 @@ def _set_piece(whistle: Whistle, sight: Sight, state: State, team: Team) -> str:
         ),
         State.PENALTY: lambda: restarts.penalty(team, field, ends),
     }
-    whistle.interrupt(made[state](), "by hand")
+    if whistle.shootout and team is not whistle.shootout.shooter:
+        whistle.end_penalty(scored=False)
+    else:
+        whistle.interrupt(made[state](), "by hand")
     return ""
 
 
 def _goal(whistle: Whistle, team: Team, more: bool) -> str:
     if not team:
         return "a goal needs a team: cyan or magenta"
-    if more:
+    if more and whistle.at_rest:
+        whistle.goal(team)
+    elif more and whistle.shootout:
+        whistle.end_penalty(scored=True)
+    elif more:
         whistle.goal(team)
         whistle.interrupt(restarts.kick_off(team.other))
     elif whistle.score[team] == 0:
         return f"{team.name.lower()} has no goal to take back"
     else:
         whistle.score[team] -= 1
+        if whistle.shootout:
+            whistle.shootout.take_back(team)
     return ""
 
 
@@ -93,13 +99,11 @@ def _robot(whistle: Whistle, sight: Sight, name: str, namespace: str, names: Nam
 def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
     match name:
         case "start":
-            if not whistle.stopped or whistle.state in (State.HALF_TIME, State.FROZEN):
-                return "nothing to start: the game runs, or has a break"
             whistle.start(sight)
         case "stop":
             whistle.stop(sight.ball)
         case "drop_ball":
-            whistle.interrupt(restarts.dropped_ball(sight.ball, whistle.rules.field), "by hand")
+            whistle.interrupt(restarts.dropped_ball(whistle.place(sight.ball), whistle.rules.field), "by hand")
         case "park":
             for each in sight.robots:
                 whistle.cards.take_out(each, whistle.rules.repair_s)
@@ -110,6 +114,6 @@ def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
         case "reset":
             whistle.begin_match()
         case _:
-            known = [*_SET_PIECES, "goal", "subgoal", *_CARDS, "repair", "substitution", *_HALVES]
+            known = [*SET_PIECES, "goal", "subgoal", *_CARDS, "repair", "substitution", *_HALVES]
             return f"no command '{name}'; there are {', '.join([*known, *_PLAIN])}"
     return ""

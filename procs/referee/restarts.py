@@ -46,6 +46,11 @@ def dropped_ball(place: Point, field: Field) -> Restart:
     return Restart(State.DROP_BALL, Team.NONE, spot)
 
 
+def ball_left_there(place: Point, field: Field) -> Restart:
+    """Returns a dropped ball where play was stopped, as near to goals and lines as a free kick may be."""
+    return Restart(State.DROP_BALL, Team.NONE, _for_free_kick(place, field))
+
+
 def after_side_line(place: Point, touched_by: Team, field: Field) -> Restart:
     """Returns the throw-in of the other team where the ball went out; a dropped ball without a last touch."""
     if touched_by is Team.NONE:
@@ -79,13 +84,17 @@ def goal_kick(team: Team, y_m: float, field: Field, ends: Ends) -> Restart:
 
 def after_foul(place: Point, offender: Team, field: Field) -> Restart:
     """Returns the free kick of the other team at the place, at most as near to a goal as the penalty marks."""
-    x_m = _within(place.x_m, field.half_length_m - field.penalty_mark_distance_m)
-    return Restart(State.FREE_KICK, offender.other, Point(x_m, _within(place.y_m, field.half_width_m - 0.5)))
+    return Restart(State.FREE_KICK, offender.other, _for_free_kick(place, field))
 
 
 def penalty(team: Team, field: Field, ends: Ends) -> Restart:
     """Returns the penalty of a team, from the mark before the other team's goal."""
     return Restart(State.PENALTY, team, field.penalty_mark(ends.side_of(team.other)))
+
+
+def _for_free_kick(place: Point, field: Field) -> Point:
+    x_m = _within(place.x_m, field.half_length_m - field.penalty_mark_distance_m)
+    return Point(x_m, _within(place.y_m, field.half_width_m - 0.5))
 
 
 def _within(value_m: float, limit_m: float) -> float:

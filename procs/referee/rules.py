@@ -16,7 +16,11 @@ class Rules(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     automatic: bool = True
-    """The referee decides by itself; false: it only carries out commands, of a person or a RefBox."""
+    """The referee decides by itself; false: it only carries out commands, of a person or a RefBox.
+
+    Without commands a set piece then becomes play when it has been taken or its time is over, robots come back when
+    their time beside the field is over, and a ball that is pushed off its spot in a stoppage is put back.
+    """
     half_s: PositiveFloat = 900.0
     """Length of a half, stoppages included (2016: 15 min)."""
     half_time_s: NonNegativeFloat = 5.0

@@ -28,3 +28,7 @@ class Shootout:
         team = self.shooter
         self.shots[team] += 1
         self.goals[team] += scored
+
+    def take_back(self, team: Team) -> None:
+        """Counts one of a team's goals as a miss, if it has any."""
+        self.goals[team] = max(0, self.goals[team] - 1)

@@ -61,6 +61,7 @@ class Whistle:
         self.cards = Cards()
         self.shootout: Shootout | None = None
         self.calls: list[Call] = []
+        self._left_at: Point | None = None  # by the ball: where it was when the game was last stopped
         self._changing_ends = False
         self._since_placed_s = 0.0
         self._repeats = 0
@@ -72,9 +73,18 @@ class Whistle:
         return self.state is State.FROZEN
 
     @property
+    def at_rest(self) -> bool:
+        """Whether the match has a break, or has ended."""
+        return self.state in (State.HALF_TIME, State.FROZEN)
+
+    @property
     def restart(self) -> Restart:
         """The set piece at hand."""
         return Restart(self.state, self.team, self.spot)
+
+    def place(self, ball: Point) -> Point:
+        """Returns the place to which a set piece by hand belongs: where play was stopped, or else where the ball is."""
+        return self._left_at if self.stopped and self._left_at else ball
 
     def step(self, duration_s: float, sight: Sight) -> None:
         """Runs one tick of `duration_s`."""
@@ -85,10 +95,11 @@ class Whistle:
         if self.over:
             return
         if self.state is State.HALF_TIME:
-            if self.time_in_state_s >= self.rules.half_time_s:
-                self.begin_half(halves.after(self.half, self.score, self.rules) or halves.SECOND)
+            if self.rules.automatic and self.time_in_state_s >= self.rules.half_time_s:
+                self._end_break()
             return
         self.time_in_half_s += duration_s
+        self._remember(sight.ball)
         if not self.rules.automatic:
             self._follow(duration_s, sight)
         elif not self.shootout and self.time_in_half_s >= halves.length_s(self.half, self.rules):
@@ -108,15 +119,16 @@ class Whistle:
         """Begins a half with its kick-off, or the penalties with the first of them."""
         ends = halves.ends_of(half, self.rules)
         self._changing_ends, self.ends = ends != self.ends, ends
-        self.half, self.time_in_half_s = half, 0.0
+        self.half, self.time_in_half_s, self._left_at = half, 0.0, None
         self.shootout = Shootout(self.rules.penalties) if half == halves.PENALTIES else None
         self.interrupt(self._next_penalty() if self.shootout else restarts.kick_off(halves.kicks_off(half)))
 
     def stop(self, ball: Point) -> None:
-        """Stops the game until it is started by hand; from play it goes on with a dropped ball."""
+        """Stops the game until it is started by hand; from play it goes on with a dropped ball where the ball is."""
+        self._remember(ball)
         if self.state is State.PLAY:
-            self.interrupt(restarts.dropped_ball(ball, self.rules.field), "by hand")
-        elif self.state not in (State.HALF_TIME, State.FROZEN):
+            self.interrupt(restarts.ball_left_there(self._left_at or ball, self.rules.field), "by hand")
+        elif not self.at_rest:
             self._enter(self.state, self.team, stopped=True)
         self.held = True
 
@@ -125,6 +137,13 @@ class Whistle:
         if halves.after(self.half, self.score, self.rules):
             self._enter(State.HALF_TIME, Team.NONE, stopped=True)
             self.calls.append(Call(self.state, Team.NONE))
+        else:
+            self.end_match()
+
+    def _end_break(self) -> None:
+        following = halves.after(self.half, self.score, self.rules)
+        if following:
+            self.begin_half(following)
         else:
             self.end_match()
 
@@ -154,6 +173,18 @@ class Whistle:
         self.score[team] += 1
         self.calls.append(Call(State.KICK_OFF, team, goal=True))
 
+    def end_penalty(self, scored: bool) -> None:
+        """Counts the deciding penalty at hand, and goes on with the next one; ends a match that is decided."""
+        assert self.shootout
+        shooter = self.shootout.shooter
+        self.shootout.shot(scored)
+        if scored:
+            self.goal(shooter)
+        if self.shootout.decided and self.rules.automatic:
+            self.end_half()
+        else:
+            self.interrupt(self._next_penalty(), "" if scored else "missed")
+
     def card(self, robot: str, card: Card) -> None:
         """Shows a card."""
         shown = self.cards.show(robot, card, self.rules)
@@ -166,10 +197,10 @@ class Whistle:
         return misplaced(restart, sight.robots, self.ends, self.rules.field, keeper)
 
     def _follow(self, duration_s: float, sight: Sight) -> None:
-        """Follows a game that is led by hand: set pieces become play."""
+        """Follows a game that is led by hand: set pieces become play, except for penalties that decide the match."""
         if self.stopped:
             self._guard_ball(duration_s, sight)
-        elif self.state is not State.PLAY:
+        elif self.state is not State.PLAY and not self.shootout:
             self._stretch.watch(duration_s, sight, self.ends, self.rules)
             if self._stretch.rolled(sight.ball, self.rules) or self.time_in_state_s >= self.rules.set_piece_s:
                 self._play(sight.ball)
@@ -261,15 +292,8 @@ class Whistle:
         self._stretch.rolled(scene.sight.ball, self.rules)
         late = not scene.touches.robots and self.time_in_state_s >= self.rules.penalty_s
         missed = bool(left) or late or scene.touches.again or self.time_in_state_s >= self.rules.shot_s
-        if not scored and not missed:
-            return
-        self.shootout.shot(scored)
-        if scored:
-            self.goal(self.team)
-        if self.shootout.decided:
-            self.end_half()
-        else:
-            self.interrupt(self._next_penalty(), "" if scored else "missed")
+        if scored or missed:
+            self.end_penalty(scored)
 
     def _give_free_kick(self, foul: Foul) -> None:
         """Interrupts the game for the free kick, or the penalty, that the foul brings."""
@@ -290,6 +314,12 @@ class Whistle:
     def _next_penalty(self) -> Restart:
         assert self.shootout
         return restarts.penalty(self.shootout.shooter, self.rules.field, self.ends)
+
+    def _remember(self, ball: Point) -> None:
+        """Remembers where the ball is while the game runs; of a ball that is out, where it was first seen outside."""
+        inside = self.rules.field.in_field
+        if not self.stopped and (self._left_at is None or inside(*self._left_at) or inside(*ball)):
+            self._left_at = ball
 
     def _place(self) -> None:
         self.placements += 1

@@ -1,7 +1,10 @@
-"""Areas: one field player of a team, for 10 s at most, in a penalty area; only goalkeepers in a goal area (2016)."""
+"""Areas: one field player of a team, for 10 s at most, in a penalty area; only its goalkeeper in a goal area (2016).
+
+In the opponents' areas a goalkeeper is a field player.
+"""
 
 from procs.model.field import SIDES
-from procs.referee.ends import Team, team_number
+from procs.referee.ends import team_number
 from procs.referee.fouls.foul import Foul, Scene
 
 
@@ -14,9 +17,13 @@ class Areas:
 
     def watch(self, scene: Scene) -> Foul | None:
         """Returns the foul of the robot that has been where it may not for the longest time."""
-        keepers = {scene.sight.goalkeeper(team) for team in (Team.CYAN, Team.MAGENTA)}
-        players = [name for name in sorted(scene.sight.robots) if name not in keepers]
-        inside = {name: side for name in players for side in SIDES if self._in_penalty_area(scene, name, side)}
+        keepers = {side: scene.sight.goalkeeper(scene.ends.defender(side)) for side in SIDES}
+        inside = {
+            name: side
+            for name in sorted(scene.sight.robots)
+            for side in SIDES
+            if name != keepers[side] and self._in_penalty_area(scene, name, side)
+        }
         self._inside_s = {name: self._inside_s.get(name, 0.0) + scene.duration_s for name in inside}
         forbidden = [name for name in inside if self._is_second(name, inside) or self._in_goal_area(scene, name)]
         self._forbidden_s = {name: self._forbidden_s.get(name, 0.0) + scene.duration_s for name in forbidden}

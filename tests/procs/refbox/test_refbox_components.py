@@ -188,3 +188,16 @@ def test_card_is_sent_with_the_number_of_the_player() -> None:
         assert heard[0] == {"command": "RED_CARD", "targetTeam": MAGENTA, "robotID": 7}
         assert [each["command"] for each in heard] == ["RED_CARD", "STOP", "HALF_TIME"]
     bench.finalize()
+
+
+def test_newcomer_hears_of_score_break_and_players() -> None:
+    bench = Bench(RefBoxServer, "world/refbox", port=0, players={"anna": {"team": "magenta", "number": 7}})
+    with contextlib.closing(BaseStation(bench.component.port)) as station:
+        bench.port("game_state").put(
+            state=game_state_t.HALF_TIME, half=1, stopped=True, score_cyan=1, n_sent_off=1, sent_off=["anna"]
+        )
+        bench.iterate()
+        heard = station.heard(6)
+        assert [each["command"] for each in heard] == ["WELCOME", "FIRST_HALF", "GOAL", "REPAIR", "STOP", "HALF_TIME"]
+        assert heard[3] == {"command": "REPAIR", "targetTeam": MAGENTA, "robotID": 7}
+    bench.finalize()

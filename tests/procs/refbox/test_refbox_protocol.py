@@ -71,6 +71,9 @@ def test_stream_is_cut_at_nul_bytes_wherever_they_arrive() -> None:
     [
         (None, KICK_OFF, ["FIRST_HALF", "KICKOFF cyan"]),
         (None, PLAY, ["FIRST_HALF", "START"]),
+        (None, state(game_state_t.HALF_TIME), ["FIRST_HALF", "STOP", "HALF_TIME"]),
+        (None, state(game_state_t.FROZEN, half=2), ["SECOND_HALF", "STOP", "END_GAME"]),
+        (None, state(1, stopped=False, score_cyan=2), ["FIRST_HALF", "GOAL cyan", "GOAL cyan", "START"]),
         (KICK_OFF, KICK_OFF, []),
         (KICK_OFF, state(game_state_t.KICK_OFF, 1, stopped=False), ["START"]),
         (PLAY, state(game_state_t.THROW_IN, 2), ["STOP", "THROWIN magenta"]),
@@ -97,3 +100,13 @@ def test_match_that_begins_anew_is_a_reset() -> None:
     before = state(game_state_t.PLAY, stopped=False, score_cyan=2, decisions=2)
     now = state(game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, decisions=1)
     assert [command.name for command in news(before, now, [game_event_t()])] == ["RESET", "FIRST_HALF", "KICKOFF"]
+
+
+def test_robot_off_the_field_without_a_card_is_repaired() -> None:
+    now, red = state(game_state_t.PLAY, stopped=False, decisions=1), game_event_t()
+    red.card, red.team, red.robot = game_event_t.RED, game_state_t.TEAM_CYAN, "cyan2"
+    now.sent_off = ["cyan2", "magenta3"]
+    off = [Command("RED_CARD", "cyan", 2), Command("REPAIR", "magenta", 3)]
+    assert news(PLAY, now, [red]) == off
+    assert news(now, now, [red]) == []
+    assert news(None, now, [red]) == [Command("FIRST_HALF"), *off, Command("START")]

@@ -242,6 +242,10 @@ def test_one_defender_may_stand_in_its_area_at_a_set_piece() -> None:
         ({"cyan2": Point(9.5, 2.0)}, 9.5, ""),
         ({"cyan2": Point(-9.5, 2.0), "magenta2": Point(-9.5, -2.0)}, 5.0, ""),
         ({"cyan1": Point(-9.5, 2.0), "cyan2": Point(-9.5, -2.0)}, 5.0, ""),
+        ({"cyan1": Point(-10.6, 1.5)}, 15.0, ""),
+        ({"cyan1": Point(10.6, 1.5)}, 1.5, "goal area"),
+        ({"cyan1": Point(9.5, 2.0), "cyan2": Point(9.5, -2.0)}, 1.5, "too many in an area"),
+        ({"cyan1": Point(9.5, 2.0)}, 10.5, "too long in an area"),
     ],
 )
 def test_areas(places: dict[str, Point], time_s: float, reason: str) -> None:

@@ -1,0 +1,59 @@
+"""Commands by hand that make no sense at the state of the match: after its end, in a break, between deciding penalties.
+
+Cards, repairs and the score can be put right at any time, and a half can begin at any time.
+"""
+
+from procs.referee import halves
+from procs.referee.ends import Team
+from procs.referee.restarts import State
+from procs.referee.whistle import Whistle
+
+SET_PIECES = {
+    "kickoff": State.KICK_OFF,
+    "freekick": State.FREE_KICK,
+    "goalkick": State.GOAL_KICK,
+    "throwin": State.THROW_IN,
+    "corner": State.CORNER_KICK,
+    "penalty": State.PENALTY,
+}
+_NEXT = {
+    halves.FIRST: "second_half begins the next half",
+    halves.SECOND: "first_half_overtime begins the overtime",
+    halves.THIRD: "second_half_overtime begins the next half",
+    halves.FOURTH: "penalties begins the deciding penalties",
+}
+
+
+def why_not(whistle: Whistle, name: str, team: Team) -> str:
+    """Returns why a command makes no sense now, and what would; an empty text if it does."""
+    if name == "start" and (not whistle.stopped or whistle.at_rest):
+        return "nothing to start: the game runs, or has a break"
+    if name in SET_PIECES or name in ("drop_ball", "half_time"):
+        if whistle.over:
+            return f"no {_words(name)} after the end of the match; reset begins another match"
+        if whistle.state is State.HALF_TIME:
+            return f"no {_words(name)} in a break; {_NEXT[whistle.half]}"
+    if name == "half_time" and not halves.after(whistle.half, whistle.score, whistle.rules):
+        return "no half time: no other half follows; end_game ends the match"
+    if whistle.shootout and not whistle.over:
+        return _why_not_between_penalties(whistle, name, team)
+    return ""
+
+
+def _why_not_between_penalties(whistle: Whistle, name: str, team: Team) -> str:
+    assert whistle.shootout
+    shooter = whistle.shootout.shooter
+    whose = shooter.name.lower()
+    if name == "drop_ball" or (name in SET_PIECES and name != "penalty"):
+        return f"no {_words(name)} while penalties decide the match; penalty team={whose} repeats the one at hand"
+    if name == "goal" and team is shooter.other:
+        return f"{team.name.lower()} cannot score: the penalty is one of {whose}"
+    if name == "penalty" and team is shooter.other and whistle.stopped and not whistle.held:
+        return f"{team.name.lower()} cannot shoot yet: the penalty of {whose} has not been started"
+    return ""
+
+
+def _words(name: str) -> str:
+    return {"drop_ball": "dropped ball", "half_time": "half time"}.get(name) or (
+        SET_PIECES[name].name.lower().replace("_", " ")
+    )

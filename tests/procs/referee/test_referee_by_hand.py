@@ -1,0 +1,137 @@
+"""A match that is led by commands: stops and starts, breaks, and commands that make no sense."""
+
+import pytest
+
+from procs.model.field import Point
+from procs.referee.orders import carry_out
+from procs.referee.restarts import State
+from procs.referee.sight import Sight
+from procs.simulation.physics.events import Kind
+from tests.procs.referee.script import CYAN, MAGENTA, Script
+
+
+def ask(script: Script, name: str, team: str = "") -> str:
+    """Gives a command, and lets the crew place the ball; returns why it was refused."""
+    refused = carry_out(script.whistle, Sight(script.ball, robots=script.robots), name, team)
+    script.tick()
+    return refused
+
+
+def led_by_hand() -> Script:
+    """Returns a match that only commands lead, in play."""
+    script = Script(automatic=False)
+    assert ask(script, "start") == ""
+    script.touch("cyan2")
+    script.roll(-1.0, 0.0)
+    assert script.state[0] is State.PLAY
+    return script
+
+
+@pytest.mark.parametrize(
+    ("ball", "command", "spot"),
+    [
+        ((2.0, 5.0), "freekick", (2.0, 5.0)),
+        ((2.0, 7.1), "throwin", (2.0, 6.9)),
+        ((-3.0, -7.4), "throwin", (-3.0, -6.9)),
+        ((11.2, -3.0), "goalkick", (-7.4, -3.5)),
+        ((11.2, -3.0), "corner", (10.8, -6.8)),
+        ((6.0, -3.0), "drop_ball", (7.4, -3.5)),
+    ],
+)
+def test_set_piece_belongs_where_play_was_stopped(
+    ball: tuple[float, float], command: str, spot: tuple[float, float]
+) -> None:
+    script = led_by_hand()
+    script.roll(*ball)
+    ask(script, "stop")
+    script.wait(2.0)
+    assert ask(script, command, "" if command == "drop_ball" else "cyan") == ""
+    assert script.whistle.spot == pytest.approx(spot)
+    script.wait(2.0)
+    ask(script, "penalty", "cyan")
+    ask(script, command, "" if command == "drop_ball" else "cyan")
+    assert script.whistle.spot == pytest.approx(spot), "the decision is changed"
+
+
+def test_throw_in_belongs_where_the_ball_went_out() -> None:
+    script = led_by_hand()
+    for place in ((2.0, 6.9), (2.2, 7.2), (3.0, 7.9)):
+        script.roll(*place)
+    ask(script, "stop")
+    ask(script, "throwin", "magenta")
+    assert script.whistle.spot == pytest.approx((2.2, 6.9))
+
+
+def test_stop_leaves_the_ball_where_it_is() -> None:
+    script = led_by_hand()
+    script.roll(2.0, 5.0)
+    ask(script, "stop")
+    assert (script.state, script.ball) == ((State.DROP_BALL, 0, True), (2.0, 5.0))
+
+
+def test_start_after_a_stop_drops_the_ball_there() -> None:
+    for ball, spot in (((2.0, 5.0), (2.0, 5.0)), ((2.0, 7.4), (2.0, 6.5)), ((10.8, 1.0), (7.4, 1.0))):
+        script = led_by_hand()
+        script.roll(*ball)
+        ask(script, "stop")
+        assert ask(script, "start") == ""
+        assert (script.state[0], script.whistle.stopped) == (State.DROP_BALL, False)
+        assert script.ball == pytest.approx(spot)
+        script.roll(0.0, 0.0)
+        assert script.state[0] is State.PLAY
+
+
+def test_set_piece_without_a_stop_belongs_where_the_ball_is() -> None:
+    script = led_by_hand()
+    script.roll(3.0, -2.0)
+    script.ball = Point(3.2, -2.0)
+    ask(script, "freekick", "magenta")
+    assert (script.state[:2], script.whistle.spot) == ((State.FREE_KICK, MAGENTA), (3.2, -2.0))
+
+
+def test_set_piece_is_not_taken_where_another_half_ended() -> None:
+    script = led_by_hand()
+    script.roll(5.0, 5.0)
+    ask(script, "stop")
+    ask(script, "second_half")
+    ask(script, "freekick", "cyan")
+    assert (script.state[:2], script.whistle.spot) == ((State.FREE_KICK, CYAN), (0.0, 0.0))
+
+
+def test_break_led_by_hand_lasts_until_the_next_half() -> None:
+    script = led_by_hand()
+    ask(script, "half_time")
+    script.wait(60.0)
+    assert (script.state[0], script.whistle.half) == (State.HALF_TIME, 1)
+    assert ask(script, "second_half") == ""
+    assert (script.state, script.whistle.half) == ((State.KICK_OFF, MAGENTA, True), 2)
+
+
+def test_half_led_by_hand_lasts_until_a_command() -> None:
+    script = Script(automatic=False, half_s=5.0, overtime_half_s=5.0, decide=True)
+    for half, command in enumerate(("start", "second_half", "first_half_overtime", "second_half_overtime"), 1):
+        ask(script, command)
+        script.wait(20.0)
+        assert (script.whistle.half, script.whistle.at_rest) == (half, False)
+
+
+def test_penalty_led_by_hand_lasts_until_a_command() -> None:
+    script = Script(automatic=False, penalties=1)
+    ask(script, "penalties")
+    ask(script, "start")
+    script.touch("cyan2", Kind.KICK)
+    script.goal(11.2, "cyan2")
+    script.wait(60.0)
+    assert (script.state, script.score) == ((State.PENALTY, CYAN, False), (0, 0))
+
+
+def test_break_ends_the_match_if_no_half_follows_any_more() -> None:
+    script = Script(half_s=2.0, half_time_s=1.0, decide=True)
+    ask(script, "goal", "cyan")
+    ask(script, "second_half")
+    ask(script, "goal", "magenta")
+    script.wait(2.0)
+    assert (script.state[0], script.whistle.half) == (State.HALF_TIME, 2)
+    assert ask(script, "subgoal", "magenta") == ""
+    script.wait(1.0)
+    assert (script.state[0], script.score) == (State.FROZEN, (1, 0))

@@ -1,0 +1,152 @@
+"""Commands by hand that make no sense at the state of the match, and those that correct it."""
+
+import pytest
+
+from procs.model.field import Point
+from procs.referee.restarts import State
+from procs.simulation.physics.events import Kind
+from tests.procs.referee.script import CYAN, MAGENTA, Script
+from tests.procs.referee.test_referee_by_hand import ask
+
+SET_PIECES = ["kickoff", "freekick", "goalkick", "throwin", "corner", "penalty"]
+
+
+def ended() -> Script:
+    script = Script().playing()
+    assert ask(script, "end_game") == ""
+    return script
+
+
+def in_break() -> Script:
+    script = Script(half_time_s=60.0).playing()
+    assert ask(script, "half_time") == ""
+    return script
+
+
+def penalties() -> Script:
+    script = Script(penalties=2, decide=True)
+    assert ask(script, "penalties") == ""
+    return script
+
+
+def counted(script: Script) -> tuple[list[int], list[int]]:
+    """Returns the shots and the goals of the deciding penalties, cyan first."""
+    assert script.whistle.shootout
+    shots, goals = script.whistle.shootout.shots, script.whistle.shootout.goals
+    return [shots[CYAN], shots[MAGENTA]], [goals[CYAN], goals[MAGENTA]]
+
+
+@pytest.mark.parametrize("command", [*SET_PIECES, "drop_ball", "half_time"])
+def test_no_set_piece_after_the_end(command: str) -> None:
+    script = ended()
+    reason = ask(script, command, "cyan")
+    assert reason.startswith("no ")
+    assert reason.endswith(" after the end of the match; reset begins another match")
+    assert script.state == (State.FROZEN, 0, True)
+
+
+@pytest.mark.parametrize("command", [*SET_PIECES, "drop_ball", "half_time"])
+def test_no_set_piece_in_a_break(command: str) -> None:
+    script = in_break()
+    reason = ask(script, command, "cyan")
+    assert reason.startswith("no ")
+    assert reason.endswith(" in a break; second_half begins the next half")
+    assert script.state == (State.HALF_TIME, 0, True)
+
+
+def test_refusals_name_the_set_piece() -> None:
+    assert ask(ended(), "penalty", "cyan").startswith("no penalty after")
+    assert ask(ended(), "drop_ball").startswith("no dropped ball after")
+    assert ask(in_break(), "freekick", "cyan").startswith("no free kick in")
+
+
+def test_nothing_starts_in_a_break_or_after_the_end() -> None:
+    for script in (ended(), in_break()):
+        assert ask(script, "start") == "nothing to start: the game runs, or has a break"
+
+
+def test_score_is_corrected_without_a_kick_off_in_a_break() -> None:
+    for script in (ended(), in_break()):
+        before = script.state
+        assert ask(script, "goal", "cyan") == ""
+        assert (script.score, script.state) == ((1, 0), before)
+        assert ask(script, "subgoal", "cyan") == ""
+        assert (script.score, script.state) == ((0, 0), before)
+
+
+def test_no_half_time_without_another_half() -> None:
+    script = Script()
+    ask(script, "second_half")
+    assert ask(script, "half_time") == "no half time: no other half follows; end_game ends the match"
+    assert script.state == (State.KICK_OFF, MAGENTA, True)
+
+
+def test_half_time_before_the_overtime_of_a_draw() -> None:
+    script = Script(decide=True, half_time_s=60.0)
+    ask(script, "second_half")
+    assert ask(script, "half_time") == ""
+    assert ask(script, "corner", "cyan").endswith("; first_half_overtime begins the overtime")
+
+
+def test_goal_by_hand_is_that_of_the_penalty_at_hand() -> None:
+    script = penalties()
+    assert ask(script, "goal", "cyan") == ""
+    assert (script.state, script.score) == ((State.PENALTY, MAGENTA, True), (1, 0))
+    assert counted(script) == ([1, 0], [1, 0])
+    assert ask(script, "goal", "cyan") == "cyan cannot score: the penalty is one of magenta"
+    assert ask(script, "goal", "magenta") == ""
+    assert (script.score, counted(script)) == ((1, 1), ([1, 1], [1, 1]))
+
+
+def test_goals_by_hand_decide_the_penalties() -> None:
+    script = penalties()
+    for command, team in (("goal", "cyan"), ("start", ""), ("penalty", "cyan"), ("goal", "cyan")):
+        assert ask(script, command, team) == ""
+    assert (script.state[0], script.score) == (State.FROZEN, (2, 0)), "magenta missed, and has one penalty left"
+
+
+def test_goal_of_a_penalty_is_taken_back() -> None:
+    script = penalties()
+    ask(script, "goal", "cyan")
+    assert ask(script, "subgoal", "cyan") == ""
+    assert (script.score, counted(script)) == ((0, 0), ([1, 0], [0, 0]))
+
+
+@pytest.mark.parametrize("command", ["kickoff", "freekick", "goalkick", "throwin", "corner", "drop_ball"])
+def test_only_penalties_while_they_decide_the_match(command: str) -> None:
+    script = penalties()
+    reason = ask(script, command, "" if command == "drop_ball" else "magenta")
+    assert reason.endswith(" while penalties decide the match; penalty team=cyan repeats the one at hand")
+    assert (script.state, counted(script)) == ((State.PENALTY, CYAN, True), ([0, 0], [0, 0]))
+
+
+def test_penalty_of_the_other_team_makes_it_a_miss() -> None:
+    script = penalties()
+    assert ask(script, "penalty", "magenta") == "magenta cannot shoot yet: the penalty of cyan has not been started"
+    for stopped in (True, False):
+        script = penalties()
+        script.robots["cyan2"] = Point(6.8, 0.0)
+        ask(script, "start")
+        script.touch("cyan2", Kind.KICK)
+        if stopped:
+            ask(script, "stop")
+        assert ask(script, "penalty", "magenta") == ""
+        assert (script.state, counted(script)) == ((State.PENALTY, MAGENTA, True), ([1, 0], [0, 0]))
+
+
+def test_penalty_of_the_same_team_repeats_it() -> None:
+    script = penalties()
+    ask(script, "start")
+    assert ask(script, "penalty", "cyan") == ""
+    assert (script.state, counted(script)) == ((State.PENALTY, CYAN, True), ([0, 0], [0, 0]))
+
+
+def test_decided_penalties_led_by_hand_wait_for_the_end() -> None:
+    script = Script(automatic=False, penalties=1)
+    ask(script, "penalties")
+    ask(script, "goal", "cyan")
+    ask(script, "start")
+    ask(script, "penalty", "cyan")
+    assert (script.state[0], counted(script)) == (State.PENALTY, ([1, 1], [1, 0]))
+    assert ask(script, "end_game") == ""
+    assert script.whistle.over
