@@ -7,6 +7,7 @@ from lcmtypes.robot import kicker_state_t, motor_command_t, odometry_t
 from lcmtypes.soccer import drive_target_t, navigator_state_t, world_model_t
 from procs.behaviour import motion, obstacles
 from procs.behaviour.bodies import Bodies
+from procs.behaviour.goals import Goals
 from procs.behaviour.identity import number_of_player
 from procs.behaviour.motion import STANDSTILL, Limits, Pose, Velocity
 from procs.behaviour.path import Way, find_way
@@ -67,6 +68,7 @@ class Navigator(Component):
 
     def config_changed(self) -> None:
         self._bodies = Bodies.of(self.config.robot, self.config.ball)
+        self._goals = Goals(self.config.field, self._bodies)
 
     def loop(self) -> None:
         target, model, state = self.drive_target.value, self.world_model.value, self.navigator_state.value
@@ -117,7 +119,10 @@ class Navigator(Component):
         pose = self._pose(model)
         place = obstacles.reachable(Point(target.x_m, target.y_m), config.field, self._bodies)
         around = obstacles.discs(model, config.field, self._bodies, target.avoid_robots, target.avoid_ball)
-        way = find_way(pose.place, place, around, self._direction_rad, self._inside)
+        turn = self._goals.turning_place(pose.place, place, around)
+        way = find_way(pose.place, turn, around, self._direction_rad, lambda end: self._possible(pose.place, end))
+        if turn != place:
+            way = way._replace(length_m=way.length_m + math.dist(turn, place))
         self._direction_rad = way.direction_rad
         turn_rad = wrap_rad(target.heading_rad - pose.heading_rad)
         state.distance_m = math.dist(pose.place, place)
@@ -129,8 +134,9 @@ class Navigator(Component):
             wanted = self._give_way(wanted, pose.place, model)
         self._command(wanted, pose.heading_rad)
 
-    def _inside(self, place: Point) -> bool:
-        return obstacles.inside_walls(place, self.config.field, self._bodies)
+    def _possible(self, start: Point, end: Point) -> bool:
+        """Returns whether a detour may turn at its end."""
+        return obstacles.inside_walls(end, self.config.field, self._bodies) and self._goals.is_open(start, end)
 
     def _give_way(self, wanted: Velocity, place: Point, model: world_model_t) -> Velocity:
         players = self.config.players
