@@ -1,4 +1,4 @@
-"""Ways around the nets of the goals.
+"""Ways around the goals: their nets, and for field players the goal areas, which only goalkeepers may enter.
 
 Here u is the distance behind a goal line, and v that to the left of the middle of the field, which is y.
 """
@@ -14,7 +14,7 @@ from procs.model.geometry import clamp
 
 _OFF_POST_M = 0.05  # room between a robot that drives around a post and the post
 _NET_M = 0.04  # thickness of a net
-_OUT_M = 0.1  # a robot in a goal drives so far before the posts
+_OFF_AREA_M = 0.1  # field players keep so far off the goal areas
 _CORNER_M = 0.02  # a turning place lies so far off the block
 _ROOM_M = 0.05  # beside a robot that stands at a turning place
 
@@ -61,7 +61,7 @@ class _Block(NamedTuple):
 
 
 class Goals:
-    """Finds turning places on ways that nets stand in; does nothing on other ways."""
+    """Finds turning places on ways that nets, or goal areas, stand in; does nothing on other ways."""
 
     def __init__(self, field: Field, bodies: Bodies) -> None:
         self._field = field
@@ -75,28 +75,41 @@ class Goals:
         back_m = self._back_m(bodies, off_m)
         self._mouth_m = self._post_m - off_m
         self._nets = _Block(self._line_m, back_m, self._post_m + off_m, off_m)
+        self._area = _Block(-field.goal_area_depth_m, back_m, field.goal_area_width_m / 2)
+        self._off_area = _Block(
+            self._area.front_m - _OFF_AREA_M, back_m, max(self._area.aside_m + _OFF_AREA_M, self._nets.aside_m)
+        )
 
-    def turning_place(self, start: Point, target: Point, discs: Sequence[Disc] = ()) -> Point:
+    def outside_areas(self, place: Point) -> Point:
+        """Returns the place, or the nearest one that is off the goal areas."""
+        for side in SIDES:
+            here = self._seen(place, side)
+            if self._off_area.holds(here) and here.u_m <= 0.0:
+                return self._point(self._way_out(here), side)
+        return place
+
+    def turning_place(self, start: Point, target: Point, areas: bool, discs: Sequence[Disc] = ()) -> Point:
         """Returns the target, or the place where the shortest way around goals turns first.
 
-        `discs` are other obstacles: a turning place in one of them gives way to the side.
+        `areas`: the way also leads around the goal areas, and out of them. `discs` are other obstacles: a turning
+        place in one of them gives way to the side.
         """
         for side in SIDES if start.x_m > 0.0 else SIDES[::-1]:  # the goal at the start last
             here, there = self._seen(start, side), self._seen(target, side)
-            block = self._nets
+            block = self._off_area if areas else self._nets
             if max(here.u_m, there.u_m) <= block.front_m:
                 continue
-            if turn := self._turn(here, there, block):
+            if turn := self._turn(here, there, block, areas):
                 target = self._point(turn, side)
                 if abs(turn.v_m) > self._post_m:
                     target = _beside(target, discs)
         return target
 
-    def is_open(self, start: Point, end: Point) -> bool:
-        """Returns whether a straight detour leads through no net."""
+    def is_open(self, start: Point, end: Point, areas: bool) -> bool:
+        """Returns whether a straight detour leads through no net, nor into a goal area that is to be avoided."""
         for side in SIDES:
             here, there = self._seen(start, side), self._seen(end, side)
-            block = self._touching
+            block = self._area if areas else self._touching
             if max(here.u_m, there.u_m) <= block.front_m:
                 continue
             if self._in_goal(here):
@@ -106,12 +119,15 @@ class Goals:
                 return False
         return True
 
-    def _turn(self, here: _Place, there: _Place, block: _Block) -> _Place | None:
+    def _turn(self, here: _Place, there: _Place, block: _Block, areas: bool) -> _Place | None:
         if self._in_goal(here):
             crossing_m = self._crossing_m(here, there)
             if there.u_m < self._line_m and abs(crossing_m) <= self._mouth_m:
                 return None
-            return _Place(self._line_m - _OUT_M, clamp(crossing_m, -self._mouth_m, self._mouth_m))
+            return _Place(self._line_m - _OFF_AREA_M, clamp(crossing_m, -self._mouth_m, self._mouth_m))
+        from_beside = there.u_m <= 0.0 and abs(here.v_m) >= self._post_m
+        if areas and self._area.holds(here) and (here.u_m <= 0.0 or from_beside):
+            return self._way_out(here)
         free = self._shrunk(self._shrunk(block, here), there)
         if not free.is_crossed(here, there):
             return None
@@ -127,6 +143,12 @@ class Goals:
         if place.u_m - block.front_m <= block.aside_m - abs(place.v_m):
             return block._replace(front_m=place.u_m)
         return block._replace(aside_m=abs(place.v_m))
+
+    def _way_out(self, here: _Place) -> _Place:
+        block = self._off_area
+        if here.u_m - block.front_m <= block.aside_m - abs(here.v_m):
+            return _Place(block.front_m, here.v_m)
+        return _Place(here.u_m, math.copysign(block.aside_m, here.v_m))
 
     def _in_goal(self, place: _Place) -> bool:
         return self._line_m < place.u_m < self._depth_m and abs(place.v_m) < self._post_m

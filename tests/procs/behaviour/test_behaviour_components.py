@@ -145,6 +145,19 @@ def test_opponent_in_the_way_is_driven_around() -> None:
         assert (command.vy_m_s < -0.3) == avoid
 
 
+@pytest.mark.parametrize(
+    ("mate", "role", "reached_m"),
+    [("cyan1", "goalkeeper", 10.15), ("cyan1", "absent", 10.8), ("cyan3", "defender", 10.8)],
+)
+def test_only_goalkeepers_drive_into_goal_areas(mate: str, role: str, reached_m: float) -> None:
+    bench = Bench(Navigator, "cyan2/navigator")
+    mates = [mate_estimate_t(name=mate, role=role)]
+    put(bench, "world_model", localized=True, x_m=10.0, mates=mates)
+    put(bench, "drive_target", x_m=10.8)
+    bench.iterate()
+    assert newest(bench, "navigator_state").distance_m == pytest.approx(reached_m - 10.0)
+
+
 def put_situation(bench: Bench, **fields: Any) -> None:
     bench.port("world_model").put(localized=True, **fields)
     bench.port("game_state").put(state=game_state_t.PLAY)
