@@ -291,33 +291,10 @@ def test_senseless_target_is_rejected_and_the_skill_goes_on(skiller: Bench, targ
     assert not newest(skiller, "drive_target").stop
 
 
-@pytest.mark.parametrize(
-    ("command", "reason"),
-    [
-        ({"skill": "goto", "x_m": 99.0}, "x_m is 99; between the walls a robot's middle can be from -11.75 to 11.75"),
-        ({"skill": "goto", "y_m": -7.9}, "y_m is -7.9; between the walls a robot's middle can be from -7.75 to 7.75"),
-        ({"skill": "pass", "x_m": 12.5}, "x_m is 12.5; between the walls the place can be from -12 to 12"),
-        ({"skill": "pass", "speed_m_s": -3.0}, "speed_m_s is -3; it should be above 0, or 0 for the skill's own speed"),
-        ({"skill": "goto", "speed_m_s": -1.0}, "speed_m_s is -1; it should be above 0, or 0 for the skill's own speed"),
-    ],
-)
-def test_impossible_command_is_rejected_with_the_reason(skiller: Bench, command: dict[str, Any], reason: str) -> None:
-    assert carry_out(skiller, 1, 2.0, **command) == [(answer_t.REJECTED, reason)]
+def test_impossible_command_is_rejected_with_the_reason(skiller: Bench) -> None:
+    reason = "x_m is 99; between the walls a robot's middle can be from -11.75 to 11.75"
+    assert carry_out(skiller, 1, 2.0, skill="goto", x_m=99.0) == [(answer_t.REJECTED, reason)]
     assert newest(skiller, "drive_target").stop
-
-
-def test_pass_faster_than_the_kicker_can_is_rejected(skiller: Bench) -> None:
-    ((state, reason),) = carry_out(skiller, 1, 2.0, skill="pass", speed_m_s=20.0)
-    assert state == answer_t.REJECTED
-    fastest_m_s = float(reason.removesuffix(" at most").rpartition(" ")[2])
-    assert 6.0 < fastest_m_s < 12.0
-    assert (
-        carry_out(skiller, 1, MOUTH_M, skill="pass", x_m=2.0, speed_m_s=fastest_m_s - 0.1)[-1][0] == answer_t.ACCEPTED
-    )
-
-
-def test_place_that_is_only_aimed_at_may_lie_outside(skiller: Bench) -> None:
-    assert carry_out(skiller, 1, MOUTH_M, skill="clear", x_m=12.5) == [(answer_t.ACCEPTED, "")]
 
 
 def test_agent_orders_only_places_that_are_accepted() -> None:
