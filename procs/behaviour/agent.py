@@ -8,6 +8,7 @@ from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import game_state_t, pass_agreement_t, role_t, skill_command_t, world_model_t
 from procs.behaviour import greedy, roles
 from procs.behaviour.bodies import Bodies
+from procs.behaviour.commands import accepted_place
 from procs.behaviour.game import Game, frame_of, game_of
 from procs.behaviour.identity import team_of_player
 from procs.behaviour.order import Order
@@ -107,6 +108,7 @@ class Agent(Component):
 
     def _command(self, order: Order) -> None:
         place, heading_rad = self._frame.point(*order.place), self._frame.heading_rad(order.heading_rad)
+        place = accepted_place(order.skill, place, self.config.field, self._bodies)
         if self._is_new(order.skill, place, heading_rad, order.speed_m_s):
             command = self.skill.value
             command.skill = order.skill

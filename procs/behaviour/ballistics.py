@@ -16,7 +16,7 @@ _CARRY_S = 0.25
 """A robot that drives reaches what a robot at rest reaches from the place where it will be after this time."""
 _STANDING = Point(0.0, 0.0)
 _GRAVITY_M_S2 = 9.81
-_LOB_M_S, _KICK_M_S = 11.2, 11.9
+_LOB_M_S, KICK_M_S = 11.2, 11.9
 """Highest speed of a lob over the ground, and of any kick: the faster, the less its error changes the height."""
 _OVER_M = 0.09
 """The top of a lob's flight, which passes over robots and under the bar, is so far above a robot."""
@@ -59,7 +59,7 @@ def lob(distance_m: float, bodies: Bodies, carried_m_s: float = 0.0) -> Lob:
     slow_m_s = (distance_m - _KEEPER_M) / rise_s
     speed_m_s = min(_LOB_M_S + carried_m_s, slow_m_s)
     lift_m_s = _lift_m_s(distance_m / speed_m_s, rise_s)
-    kick_m_s = math.sqrt(_KICK_M_S**2 - min(_KICK_M_S / 2, lift_m_s) ** 2)
+    kick_m_s = math.sqrt(KICK_M_S**2 - min(KICK_M_S / 2, lift_m_s) ** 2)
     speed_m_s = min(speed_m_s, kick_m_s + carried_m_s)
     return Lob(speed_m_s, _lift_m_s(distance_m / speed_m_s, rise_s))
 

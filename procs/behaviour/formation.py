@@ -20,7 +20,10 @@ _AREA_M = 0.35
 _APART_M = 1.0
 """Least distance of two robots at a set piece."""
 _TURNS_RAD = [sign * 0.15 * step for step in range(1, 21) for sign in (1, -1)]
-_SHOOTER_X_M, _SHOOTER_Y_M = 7.0, 2.5  # a mate there can shoot
+_LENGTH_M, _WIDTH_M = 22.0, 14.0
+"""Field for which the numbers of `places` are; they become larger or smaller with the field."""
+_BACK_M, _STOPPER_M = 0.75, 0.95  # before the own penalty area: the furthest place back, and the nearest to the goal
+_SHOOTER_M, _SHOOTER_Y_M = 1.75, 2.5  # a mate so far before the opponents' penalty area, and so far aside, can shoot
 _BESIDE_FIELD_M = 0.3  # a robot at the side of the field may stand so far outside
 _BODIES_M = 0.6  # least distance of the middles of two robots
 _STEP_M = 1.5  # far enough ahead that the robot does not brake
@@ -36,21 +39,38 @@ def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
     `ours`: the team has the ball or will have it sooner; the supporter then offers itself ahead of the ball,
     on its flank: -1 or 1.
     """
-    goal = field.goal_centre(-1.0)
+    goal, along, across = field.goal_centre(-1.0), field.length_m / _LENGTH_M, field.width_m / _WIDTH_M
+    back_m = _before_area_m(field, _BACK_M)
+    shooter_m, shooter_aside_m = _before_area_m(field, _SHOOTER_M), _SHOOTER_Y_M * across
     if ours:
-        x_m = clamp(ball.x_m + 3.0, -5.0, _SHOOTER_X_M)
-        aside_m = _SHOOTER_Y_M if x_m > 3.0 else 5.0  # near the goal its mouth has to look wide
-        supporter = Point(x_m, clamp(ball.y_m + flank * 3.5, -aside_m, aside_m))
+        x_m = clamp(ball.x_m + 3.0 * along, -5.0 * along, shooter_m)
+        aside_m = shooter_aside_m if x_m > 3.0 * along else 5.0 * across  # near the goal its mouth has to look wide
+        supporter = Point(x_m, clamp(ball.y_m + flank * (3.5 * across), -aside_m, aside_m))
     else:
-        supporter = Point(clamp(ball.x_m - 2.0, -2.0, 6.0), clamp(ball.y_m * 0.5 + 2.5 * flank, -5.0, 5.0))
-    far_m = math.dist(goal, ball)
-    stopper = between(goal, ball, clamp(0.5 * far_m, 3.2, 8.0) / far_m) if far_m > 3.2 else Point(-8.0, ball.y_m * 0.5)
-    sweeper = Point(clamp(ball.x_m - 4.0, -8.0, 1.0), clamp(stopper.y_m + flank * 2.5, -4.5, 4.5))
-    if ours and ball.x_m > -5.0:
-        aside_m = _SHOOTER_Y_M if ball.x_m > 3.0 else 5.0
-        sweeper = Point(min(ball.x_m + 1.0, _SHOOTER_X_M), clamp(ball.y_m - flank * 3.5, -aside_m, aside_m))
-    spare = Point(clamp(ball.x_m - 3.0, -8.0, 2.0), clamp(ball.y_m - flank * 2.0, -6.0, 6.0))
+        aside_m = 5.0 * across
+        y_m = clamp(ball.y_m * 0.5 + 2.5 * across * flank, -aside_m, aside_m)
+        supporter = Point(clamp(ball.x_m - 2.0 * along, -2.0 * along, 6.0 * along), y_m)
+    far_m, near_m = math.dist(goal, ball), field.penalty_area_depth_m + _STOPPER_M
+    if far_m > near_m:
+        stopper = between(goal, ball, clamp(0.5 * far_m, near_m, max(near_m, 8.0 * along)) / far_m)
+    else:
+        stopper = Point(-back_m, ball.y_m * 0.5)
+    aside_m = 4.5 * across
+    y_m = clamp(stopper.y_m + flank * (2.5 * across), -aside_m, aside_m)
+    sweeper = Point(clamp(ball.x_m - 4.0 * along, -back_m, 1.0 * along), y_m)
+    if ours and ball.x_m > -5.0 * along:
+        aside_m = shooter_aside_m if ball.x_m > 3.0 * along else 5.0 * across
+        y_m = clamp(ball.y_m - flank * (3.5 * across), -aside_m, aside_m)
+        sweeper = Point(min(ball.x_m + 1.0 * along, shooter_m), y_m)
+    aside_m = 6.0 * across
+    y_m = clamp(ball.y_m - flank * (2.0 * across), -aside_m, aside_m)
+    spare = Point(clamp(ball.x_m - 3.0 * along, -back_m, 2.0 * along), y_m)
     return [supporter, stopper, sweeper, spare]
+
+
+def _before_area_m(field: Field, distance_m: float) -> float:
+    """Returns how far from the halfway line a place before a penalty area is."""
+    return field.half_length_m - (field.penalty_area_depth_m + distance_m)
 
 
 def beside_shot(own: Point, place: Point, ball: Point, field: Field) -> Point:

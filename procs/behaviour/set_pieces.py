@@ -17,6 +17,7 @@ from procs.model.field import Field, Point
 from procs.model.geometry import clamp
 from procs.referee.restarts import State
 
+_WIDTH_M = 14.0  # of the field for which distances across it are; they become larger or smaller with the field
 _INSIDE_M = 0.8  # receivers wait so far inside the touch lines
 _FREE_M = 1.5  # and so far from rivals
 
@@ -46,7 +47,7 @@ def ahead_on_the_wing(game: Game, field: Field) -> Point:
 
 def long_to_the_wing(game: Game, field: Field) -> Point:
     """Far ahead, on the other side of the field."""
-    return _inside(Point(game.spot.x_m + 5.5, -_away(game) * 3.0), field)
+    return _inside(Point(game.spot.x_m + 5.5, -_away(game) * 3.0 * (field.width_m / _WIDTH_M)), field)
 
 
 def back(_game: Game, _field: Field) -> Point:
@@ -54,9 +55,9 @@ def back(_game: Game, _field: Field) -> Point:
     return Point(-2.2, 1.0)
 
 
-def wide(_game: Game, _field: Field) -> Point:
+def wide(_game: Game, field: Field) -> Point:
     """Beside the centre mark, on the right wing of the own half."""
-    return Point(-0.7, -4.5)
+    return Point(-0.7, -4.5 * (field.width_m / _WIDTH_M))
 
 
 def cut_back(game: Game, field: Field) -> Point:

@@ -12,6 +12,7 @@ from lcmtypes.soccer import (
     world_model_t,
 )
 from procs.behaviour.bodies import Bodies
+from procs.behaviour.commands import mistake
 from procs.behaviour.game import Whose, frame_of, game_of
 from procs.behaviour.identity import team_of_player
 from procs.behaviour.skills.book import SKILLS, Machine
@@ -105,8 +106,8 @@ class Skiller(Component):
         command = request.value
         if command.skill not in SKILLS:
             request.reject(f"no skill '{command.skill}'; there are {', '.join(SKILLS)}")
-        elif not plausible(command.x_m, command.y_m, command.heading_rad, command.speed_m_s):
-            request.reject("the target is not a place on the field, or the speed is not a number")
+        elif reason := mistake(command, self.config.field, self._bodies):
+            request.reject(reason)
         else:
             if self._request and not self._request.finished:
                 self._request.fail(f"replaced by command {request.sequence} of {request.sender}")

@@ -22,7 +22,7 @@ _FAST_BALL_M_S = 1.2
 _KICK_OFF_RAD = 1.2  # nearly sideways: all mates are in the own half
 _BARRED_S = 4.0  # by then another robot has touched the ball of a set piece, or the game was interrupted
 _TOUCHED_M = 0.4
-_BENCH_M = 8.0  # from the halfway line
+_BENCH_M = 3.0  # from the goal lines
 _PASSED_S = 1.0  # after a pass the passer leaves the ball to the receiver
 _PASSED_M_S = 1.5
 _SETTLED_S = 0.14  # a ball that was caught so long ago does not bounce off when the robot turns
@@ -259,8 +259,8 @@ def keeper_takes(view: View, field: Field) -> bool:
 
 def leave_field(view: View, field: Field) -> Order:
     """Returns the order of a robot that was sent off: over the nearer touch line, and to wait there."""
-    own = view.own.place
-    place = Point(clamp(own.x_m, -_BENCH_M, _BENCH_M), math.copysign(field.half_width_m + field.border_m / 2, own.y_m))
+    own, bench_m = view.own.place, field.half_length_m - _BENCH_M
+    place = Point(clamp(own.x_m, -bench_m, bench_m), math.copysign(field.half_width_m + field.border_m / 2, own.y_m))
     return Order("goto", place, view.own.heading_rad, "leave the field")
 
 

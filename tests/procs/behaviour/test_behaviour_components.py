@@ -145,6 +145,19 @@ def test_opponent_in_the_way_is_driven_around() -> None:
         assert (command.vy_m_s < -0.3) == avoid
 
 
+@pytest.mark.parametrize(
+    ("mate", "role", "reached_m"),
+    [("cyan1", "goalkeeper", 10.15), ("cyan1", "absent", 10.8), ("cyan3", "defender", 10.8)],
+)
+def test_only_goalkeepers_drive_into_goal_areas(mate: str, role: str, reached_m: float) -> None:
+    bench = Bench(Navigator, "cyan2/navigator")
+    mates = [mate_estimate_t(name=mate, role=role)]
+    put(bench, "world_model", localized=True, x_m=10.0, mates=mates)
+    put(bench, "drive_target", x_m=10.8)
+    bench.iterate()
+    assert newest(bench, "navigator_state").distance_m == pytest.approx(reached_m - 10.0)
+
+
 def put_situation(bench: Bench, **fields: Any) -> None:
     bench.port("world_model").put(localized=True, **fields)
     bench.port("game_state").put(state=game_state_t.PLAY)
@@ -276,6 +289,21 @@ def test_senseless_target_is_rejected_and_the_skill_goes_on(skiller: Bench, targ
     assert carry_out(skiller, 1, 2.0, skill="goto", **target)[-1][0] == answer_t.REJECTED
     assert newest(skiller, "skill_status").skill == "get_ball"
     assert not newest(skiller, "drive_target").stop
+
+
+def test_impossible_command_is_rejected_with_the_reason(skiller: Bench) -> None:
+    reason = "x_m is 99; between the walls a robot's middle can be from -11.75 to 11.75"
+    assert carry_out(skiller, 1, 2.0, skill="goto", x_m=99.0) == [(answer_t.REJECTED, reason)]
+    assert newest(skiller, "drive_target").stop
+
+
+def test_agent_orders_only_places_that_are_accepted() -> None:
+    bench = Bench(Agent, "cyan2/agent")
+    bench.port("world_model").put(localized=True, x_m=9.0, y_m=7.0, ball=seen_ball(14.0, 9.0))
+    bench.port("game_state").put(state=game_state_t.FREE_KICK, stopped=True, ball_x_m=14.0, ball_y_m=9.0)
+    bench.iterate()
+    command = newest(bench, "skill")
+    assert (command.skill, command.x_m, command.y_m) == ("block", 12.0, 8.0)
 
 
 def test_skiller_that_is_stopped_fails_its_command(skiller: Bench) -> None:

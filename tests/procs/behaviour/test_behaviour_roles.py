@@ -5,11 +5,12 @@ import math
 
 import pytest
 
-from procs.behaviour import formation
+from procs.behaviour import formation, set_pieces
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER, assign
+from procs.behaviour.tactics import leave_field
 from procs.behaviour.view import View
-from procs.model.field import Point
+from procs.model.field import SIDES, Field, Point
 from procs.referee.restarts import State
 from tests.procs.behaviour.behaviour_parts import FIELD, agreed, ball, robot, view
 
@@ -167,3 +168,43 @@ def test_set_piece_near_the_goal_sends_no_player_into_an_area(spot: Point) -> No
         assert not FIELD.in_penalty_area(*place, -1.0, 0.25), place
         assert math.dist(place, spot) >= 3.0
     assert all(math.dist(place, first) >= 0.99 for place in helpers)
+
+
+@pytest.mark.parametrize(("length_m", "width_m"), [(12.0, 8.0), (18.0, 12.0), (22.0, 14.0)])
+@pytest.mark.parametrize("ours", [True, False])
+@pytest.mark.parametrize("flank", [1.0, -1.0])
+def test_posts_fit_fields_of_all_sizes(length_m: float, width_m: float, ours: bool, flank: float) -> None:
+    field = Field(length_m=length_m, width_m=width_m)
+    for x, y in itertools.product((-0.95, -0.5, 0.0, 0.5, 0.95), (-0.9, -0.3, 0.0, 0.3, 0.9)):
+        where = Point(x * field.half_length_m, y * field.half_width_m)
+        supporter, stopper, sweeper, spare = formation.places(where, ours, flank, field)
+        assert all(field.in_field(*post) for post in (supporter, stopper, sweeper, spare))
+        for post in (supporter, sweeper, spare):
+            assert not any(field.in_penalty_area(*post, side, 0.3) for side in SIDES)
+        assert not field.in_goal_area(*stopper, -1.0, 0.3)
+        assert stopper.x_m <= max(where.x_m, 3.0 - field.half_length_m)
+        assert supporter.x_m >= min(sweeper.x_m, spare.x_m)
+
+
+@pytest.mark.parametrize(("length_m", "width_m"), [(12.0, 8.0), (18.0, 12.0), (22.0, 14.0)])
+def test_receivers_and_bench_fit_fields_of_all_sizes(length_m: float, width_m: float) -> None:
+    field = Field(length_m=length_m, width_m=width_m)
+    spots = {
+        State.KICK_OFF: Point(0.0, 0.0),
+        State.THROW_IN: Point(-1.0, field.half_width_m - 0.2),
+        State.GOAL_KICK: Point(3.6 - field.half_length_m, field.restart_offset_m),
+        State.CORNER_KICK: Point(field.half_length_m - 0.2, field.half_width_m - 0.2),
+    }
+    for state, spot in spots.items():
+        game = Game(state, stopped=True, whose=Whose.OURS, spot=spot)
+        for variant in set_pieces.BOOK[state]:
+            place = set_pieces.receiver_place(variant, game, field)
+            assert field.in_field(*place), variant.name
+            assert not any(field.in_penalty_area(*place, side) for side in SIDES), variant.name
+    place = leave_field(view(robot("cyan2", field.half_length_m, 1.0), ball(0.0, 0.0)), field).place
+    assert abs(place.x_m) == field.half_length_m - 3.0
+
+
+def test_posts_on_the_usual_field_stay_where_they_were() -> None:
+    places = formation.places(Point(1.3, 0.7), True, 1.0, FIELD)
+    assert places == [Point(4.3, 2.5), Point(-4.85, 0.35), Point(2.3, -2.8), Point(-1.7, -1.3)]

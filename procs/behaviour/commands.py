@@ -1,0 +1,48 @@
+"""What the skills can carry out: places where a robot or the ball can be, and speeds that robot or kicker reach."""
+
+from lcmtypes.soccer import skill_command_t
+from procs.behaviour.ballistics import KICK_M_S, kick_speed_m_s
+from procs.behaviour.bodies import Bodies
+from procs.model.field import Field, Point
+from procs.model.geometry import clamp, plausible
+
+_DRIVES = ("goto", "dribble")
+"""The robot's middle goes to the place."""
+_AT_PLACE = ("mark", "block", "search", "aim", "pass", "push")
+"""The skill is about something at the place. The others only kick in its direction, or find the ball themselves."""
+_ROLLS = ("pass", "push")
+"""The speed is that of the ball when it arrives."""
+_ROUNDING_M = 1e-6
+
+
+def accepted_place(skill: str, place: Point, field: Field, bodies: Bodies) -> Point:
+    """Returns the place, or the nearest one that the skill accepts."""
+    if skill not in (*_DRIVES, *_AT_PLACE):
+        return place
+    x_m, y_m = _furthest_m(skill, field, bodies)
+    return Point(clamp(place.x_m, -x_m, x_m), clamp(place.y_m, -y_m, y_m))
+
+
+def mistake(command: skill_command_t, field: Field, bodies: Bodies) -> str:
+    """Returns why the command of a known skill cannot be carried out, and what could be; empty if it can."""
+    if not plausible(command.x_m, command.y_m, command.heading_rad, command.speed_m_s):
+        return "the target is not a place on the field, or the speed is not a number"
+    place = accepted_place(command.skill, Point(command.x_m, command.y_m), field, bodies)
+    furthest_m = _furthest_m(command.skill, field, bodies)
+    wanted = (("x_m", command.x_m, place.x_m, furthest_m[0]), ("y_m", command.y_m, place.y_m, furthest_m[1]))
+    for name, value_m, accepted_m, limit_m in wanted:
+        if abs(value_m - accepted_m) > _ROUNDING_M:
+            what = "a robot's middle" if command.skill in _DRIVES else "the place"
+            return f"{name} is {value_m:g}; between the walls {what} can be from {-limit_m:g} to {limit_m:g}"
+    if command.speed_m_s < 0.0:
+        return f"speed_m_s is {command.speed_m_s:g}; it should be above 0, or 0 for the skill's own speed"
+    if command.skill in _ROLLS and kick_speed_m_s(0.0, command.speed_m_s, bodies) > KICK_M_S:
+        fastest_m_s = KICK_M_S * command.speed_m_s / kick_speed_m_s(0.0, command.speed_m_s, bodies)
+        return f"speed_m_s is {command.speed_m_s:g}; after the hardest kick the ball rolls at {fastest_m_s:.1f} at most"
+    return ""
+
+
+def _furthest_m(skill: str, field: Field, bodies: Bodies) -> tuple[float, float]:
+    """Returns the largest coordinates between the walls that the skill accepts."""
+    off_m = bodies.robot_radius_m if skill in _DRIVES else 0.0
+    return field.half_length_m + field.border_m - off_m, field.half_width_m + field.border_m - off_m

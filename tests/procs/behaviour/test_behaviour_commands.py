@@ -1,0 +1,47 @@
+"""Commands that the skills cannot carry out."""
+
+from typing import Any
+
+import pytest
+
+from lcmtypes.soccer import skill_command_t
+from procs.behaviour.bodies import USUAL
+from procs.behaviour.commands import accepted_place, mistake
+from procs.model.field import Point
+from tests.procs.behaviour.behaviour_parts import FIELD
+
+
+def found(**command: Any) -> str:
+    return mistake(skill_command_t(**command), FIELD, USUAL)
+
+
+@pytest.mark.parametrize(
+    ("command", "reason"),
+    [
+        ({"skill": "goto", "x_m": 99.0}, "x_m is 99; between the walls a robot's middle can be from -11.75 to 11.75"),
+        ({"skill": "goto", "y_m": -7.9}, "y_m is -7.9; between the walls a robot's middle can be from -7.75 to 7.75"),
+        ({"skill": "pass", "x_m": 12.5}, "x_m is 12.5; between the walls the place can be from -12 to 12"),
+        ({"skill": "pass", "speed_m_s": -3.0}, "speed_m_s is -3; it should be above 0, or 0 for the skill's own speed"),
+        ({"skill": "goto", "speed_m_s": -1.0}, "speed_m_s is -1; it should be above 0, or 0 for the skill's own speed"),
+    ],
+)
+def test_reason_says_what_is_wrong_and_what_would_do(command: dict[str, Any], reason: str) -> None:
+    assert found(**command) == reason
+
+
+def test_pass_faster_than_the_kicker_can_is_a_mistake() -> None:
+    reason = found(skill="pass", speed_m_s=20.0)
+    fastest_m_s = float(reason.removesuffix(" at most").rpartition(" ")[2])
+    assert 6.0 < fastest_m_s < 12.0
+    assert not found(skill="pass", speed_m_s=fastest_m_s - 0.1)
+
+
+def test_place_that_is_only_aimed_at_may_lie_outside() -> None:
+    assert not found(skill="clear", x_m=12.5)
+    assert accepted_place("clear", Point(12.5, 0.0), FIELD, USUAL) == (12.5, 0.0)
+
+
+@pytest.mark.parametrize("skill", ["goto", "dribble", "mark", "block", "search", "aim", "pass", "push"])
+def test_accepted_place_is_no_mistake(skill: str) -> None:
+    place = accepted_place(skill, Point(-30.0, 9.0), FIELD, USUAL)
+    assert not found(skill=skill, x_m=place.x_m, y_m=place.y_m)
