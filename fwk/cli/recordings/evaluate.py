@@ -81,10 +81,12 @@ def _play(campaign: Campaign, work: Evaluation, file: str, time_s: float, seeds:
     for damaged, flaw in campaign.damaged(seeds).items():
         typer.echo(f"note: {damaged} is damaged: {flaw}; its seed is played again", err=True)
     left = campaign.missing(seeds)
+    if not left:
+        return ""
     label = f"{len(left)} of {len(seeds)} runs"
     try:
         with (
-            executor_of(jobs or os.cpu_count() or 1, cluster) as executor,
+            executor_of(min(jobs or os.cpu_count() or 1, len(left)), cluster) as executor,
             typer.progressbar(length=len(left), label=label, file=sys.stderr) as bar,
         ):
             for _ in campaign.play(work, file, time_s, left, executor):

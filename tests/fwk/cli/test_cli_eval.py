@@ -16,6 +16,7 @@ import pytest
 from typer.testing import CliRunner
 
 from fwk.cli.commands import app
+from fwk.cli.recordings import evaluate
 from fwk.testing import campaign
 from fwk.testing.campaign import Campaign, CampaignError, FolderError, executor_of
 from tests.fwk.cli.cli_eval_parts import measured
@@ -55,6 +56,19 @@ def test_interrupted_evaluation_resumes(launch: Path) -> None:
     kept = launch.parent / "eval-it" / "seed-12.json"
     kept.write_text(kept.read_text().replace("12", "120"))  # it is not played again
     assert evaluated(str(launch), "--seeds", "12", "--jobs", "1")[:2] == (0, "120\n")
+
+
+def test_no_more_processes_than_missing_runs(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[int] = []
+
+    def counted(jobs: int, cluster: str) -> Any:
+        asked.append(jobs)
+        return ThreadPoolExecutor(jobs)
+
+    monkeypatch.setattr(evaluate, "executor_of", counted)
+    for seeds, jobs in (("1..2", "99999"), ("1..3", "400"), ("1..3", "400"), ("1..9", "4")):
+        assert evaluated(str(launch), "--seeds", seeds, "--jobs", jobs)[0] == 0
+    assert asked == [2, 1, 4]
 
 
 @pytest.mark.parametrize(
