@@ -63,7 +63,12 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
         ("commands: [{place_ball: {x: 1}}]", ScenarioError, "commands.0: place_ball: there is no 'x'; there are x_m"),
         ("commands: [{place_robot: {x_m: left}}]", ScenarioError, "x_m is 'left'; it should be a number"),
         ("robots: [", ScenarioError, "mine.yaml"),
-        ("eventually: ['x(ball']", ExpressionError, "never closed"),
+        ("robots: [cyan2]\nplaces: {cyan2: [100, 0, 0]}\nat_end: [ball_speed < 1]", ScenarioError, "outside the walls"),
+        ("dummies: [a1, b1]\nplaces: {a1: [0, 0, 0], b1: [0, 0, 0]}\nat_end: [ball]", ScenarioError, "0 m apart"),
+        ("robots: [cyan2]\nplaces: {cyan2: [.nan, 0, 0]}", ScenarioError, "places.cyan2.0: .* finite number"),
+        ("at_end: [ball]\ntime_s: 1\ncommands: [{at_s: 1, place_ball: {}}]", ScenarioError, "at_s is 1; the scenario"),
+        ("robots: [cyan1]\nat_end: [frobnicate(cyan1)]", ScenarioError, "calls only abs, ball"),
+        ("eventually: ['x(ball']", ScenarioError, "never closed"),
         ("dummies: [cyan2]\neventually: [x(cyan3) > 0]", ExpressionError, "no robot 'cyan3'"),
         ("dummies: [cyan2]\neventually: [world.game.score > 0]", ExpressionError, "world/game"),
     ],
@@ -104,6 +109,28 @@ def test_command_that_is_refused_breaks_a_scenario(tmp_path: Path) -> None:
     text = "dummies: [cyan2]\ncommands: [{referee: {name: pause}}]\nalways: [x(cyan2) < 0]\ntime_s: 0.3\n"
     (refused,) = run(written(tmp_path, text)).broken
     assert refused.startswith("refused: no command 'pause'; there are kickoff")
+
+
+@pytest.mark.parametrize(
+    ("at_s", "condition", "broken"),
+    [
+        (0.28, "at_end: [x(cyan2) < 0]", "without an answer: 1 commands"),
+        (0.28, "eventually: [x(cyan2) < 0]", "without an answer: 1 commands"),
+    ],
+)
+def test_command_without_an_answer_breaks(tmp_path: Path, at_s: float, condition: str, broken: str) -> None:
+    text = f"dummies: [cyan2]\ncommands: [{{at_s: {at_s}, place_ball: {{x_m: 1}}}}]\n{condition}\ntime_s: 0.3\n"
+    assert run(written(tmp_path, text)).broken == [broken]
+
+
+def test_files_after_one_that_cannot_be_judged_are_played(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bad = written(tmp_path, "dummies: [cyan2]\nalways: [world.game.score > 0]\ntime_s: 0.2\n")
+    monkeypatch.setattr("sys.argv", ["scenarios", str(bad), "match-ends"])
+    assert command.main() == 2
+    printed = capsys.readouterr()
+    assert (printed.out.startswith("ok     match-ends"), "world/game" in printed.err) == (True, True)
 
 
 def test_evaluation_of_the_book_counts_seeds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
