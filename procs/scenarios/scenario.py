@@ -122,8 +122,23 @@ def _mistakes(scenario: Scenario) -> list[str]:
             found.append(f"commands.{place}: at_s is {action.at_s:g}; the scenario ends at {scenario.time_s:g} s")
     if not found:
         found += place_mistakes(_simulator_settings(scenario))
+    if not found:
+        found += _unknown_in(scenario)
     if not (scenario.eventually or scenario.in_order or scenario.always or scenario.at_end):
         found.append("nothing has to happen; give eventually, in_order, always or at_end")
+    return found
+
+
+def _unknown_in(scenario: Scenario) -> list[str]:
+    """Returns the conditions that name a channel, field, robot or state that the first tick does not have."""
+    system, found = system_of(scenario), []
+    system.tick()
+    for text in (*scenario.eventually, *scenario.in_order, *scenario.always, *scenario.at_end):
+        try:
+            Expression(text, WORDS).value(system.newest)
+        except ExpressionError as error:
+            if isinstance(error.__cause__, (AttributeError, KeyError, OverflowError, TypeError)):
+                found.append(str(error))
     return found
 
 
