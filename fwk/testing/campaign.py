@@ -5,7 +5,7 @@ import multiprocessing
 import os
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib import import_module
 from inspect import signature
@@ -24,10 +24,17 @@ Settings that the launch file's own are overridden with are a fourth argument, i
 INSTALL = "pip install 'fwk[eval]'"
 CONNECT_S = 5.0
 """Longest time for the connection to a scheduler."""
+_ABSENT = "there is none"
+_EMPTY: tuple[Any, ...] = ("", {}, [])
+"""Values without a measurement."""
 
 
 class CampaignError(RuntimeError):
     """A campaign that cannot be played."""
+
+
+class FolderError(CampaignError):
+    """A folder that cannot hold a campaign: a file of it is damaged, or cannot be read or written."""
 
 
 @dataclass(frozen=True)
@@ -81,21 +88,47 @@ class Campaign:
 
         Raises:
             CampaignError: the folder holds another campaign.
+            FolderError: what the folder says about its campaign is damaged, or cannot be read or written.
+            OSError: there is no folder, and none can be made.
         """
         self._folder = folder
+        self._flaws: dict[int, str] = {}
+        """What is wrong with the result of a seed, by seeds whose file was read; an empty text: nothing."""
         folder.mkdir(parents=True, exist_ok=True)
         note, text = folder / "campaign.json", json.dumps(dict(about), sort_keys=True)
-        if note.exists() and note.read_text() != text:
-            raise CampaignError(f"{folder} holds another campaign: {note.read_text()}; choose another folder")
-        note.write_text(text)
+        old = _read(note)
+        if old is None:
+            _write(note, text)
+        elif _flaw_of(old) and old != text.encode():
+            cure = "remove it if the results beside it are of this launch file and its settings"
+            raise FolderError(f"{note} is damaged: {_flaw_of(old)}; {cure}, or choose another folder")
+        elif json.loads(old) != json.loads(text):
+            raise CampaignError(f"{folder} holds another campaign: {old.decode()}; choose another folder")
 
     def missing(self, seeds: Iterable[int]) -> list[int]:
-        """Returns the seeds without a result."""
-        return [seed for seed in seeds if not self._file(seed).exists()]
+        """Returns the seeds without a result, or with a damaged one.
+
+        Raises:
+            FolderError: a result cannot be read.
+        """
+        return [seed for seed in seeds if self._flaw(seed)]
+
+    def damaged(self, seeds: Iterable[int]) -> dict[Path, str]:
+        """Returns the files of the seeds' results that are damaged, and what is wrong with each.
+
+        Raises:
+            FolderError: a result cannot be read.
+        """
+        found = {self._file(seed): self._flaw(seed) for seed in seeds}
+        return {file: flaw for file, flaw in found.items() if flaw not in ("", _ABSENT)}
 
     def results(self, seeds: Iterable[int]) -> "Results":
-        """Returns the results of the seeds that have one, in the order of the seeds."""
-        return Results([file for file in map(self._file, seeds) if file.exists()])
+        """Returns the results of the seeds that have a whole one, in the order of the seeds.
+
+        Raises:
+            FolderError: a result cannot be read.
+        """
+        return Results([self._file(seed) for seed in seeds if not self._flaw(seed)])
 
     def play(
         self, work: Work, file: str, time_s: float, seeds: Iterable[int], executor: Executor
@@ -106,6 +139,7 @@ class Campaign:
 
         Raises:
             CampaignError: runs failed; all others were played and have their results.
+            FolderError: a result cannot be read or written.
         """
         running = {executor.submit(work, file, time_s, seed): seed for seed in self.missing(seeds)}
         count, failures = len(running), dict[int, str]()
@@ -113,11 +147,12 @@ class Campaign:
             for future in as_completed(running):
                 seed = running.pop(future)  # a future keeps its result
                 try:
-                    result = future.result()
+                    text = _text_of(future.result())
                 except Exception as error:
                     failures[seed] = f"{type(error).__name__}: {error}"
                     continue
-                self._keep(seed, result)
+                _write(self._file(seed), text)
+                self._flaws[seed] = ""
                 yield seed
         except KeyboardInterrupt:  # the executor ends all runs; one that is cancelled before makes it print an error
             running = {}
@@ -129,14 +164,70 @@ class Campaign:
             causes = "; ".join(f"seed {seed}: {cause}" for seed, cause in sorted(failures.items()))
             raise CampaignError(f"{len(failures)} of {count} runs failed: {causes}")
 
-    def _keep(self, seed: int, result: Any) -> None:
-        """Writes a result in one step: a file is whole or not there."""
-        partial = self._folder / f".{seed}.{os.getpid()}"
-        partial.write_text(json.dumps(result))
-        partial.replace(self._file(seed))
+    def _flaw(self, seed: int) -> str:
+        """Returns why a seed has no result that counts, or an empty text; a file is read once, as it may be large."""
+        if seed not in self._flaws:
+            content = _read(self._file(seed))
+            self._flaws[seed] = _ABSENT if content is None else _flaw_of(content)
+        return self._flaws[seed]
 
     def _file(self, seed: int) -> Path:
         return self._folder / f"seed-{seed}.json"
+
+
+def _text_of(result: Any) -> str:
+    """Returns the text of a result.
+
+    Raises:
+        CampaignError: it has no measurements.
+        TypeError: it has values that JSON does not know.
+    """
+    if result in _EMPTY:
+        raise CampaignError(f"the evaluation returned {result!r}, which has no measurements")
+    return json.dumps(result)
+
+
+def _flaw_of(content: bytes) -> str:
+    """Returns what is wrong with the content of a file, or an empty text."""
+    try:
+        value = json.loads(content)
+    except (ValueError, RecursionError) as error:
+        return f"it is no JSON ({error})" if content else "it is empty"
+    return "it says nothing" if value in _EMPTY else ""
+
+
+def _read(file: Path) -> bytes | None:
+    """Returns the content of a file, or None if there is none.
+
+    Raises:
+        FolderError: the file cannot be read.
+    """
+    try:
+        return file.read_bytes()
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise FolderError(f"{file} cannot be read: {error.strerror}; move it away, or choose another folder") from error
+
+
+def _write(file: Path, text: str) -> None:
+    """Writes a file in one step: it is whole or not there.
+
+    Raises:
+        FolderError: the file cannot be written.
+    """
+    partial = file.with_name(f".{file.stem}.{os.getpid()}")
+    try:
+        with open(partial, "w", encoding="utf-8") as opened:
+            opened.write(text)
+            opened.flush()
+            os.fsync(opened.fileno())
+        partial.replace(file)
+    except OSError as error:
+        with suppress(OSError):
+            partial.unlink()
+        cure = "make room for it there, or choose another folder"
+        raise FolderError(f"{file} cannot be written: {error.strerror}; {cure}") from error
 
 
 @contextmanager

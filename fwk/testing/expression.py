@@ -4,6 +4,8 @@ import ast
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from fwk.testing.bounded import BOUNDED, Bounding
+
 Words = Mapping[str, Callable[..., Any]]
 """Functions that conditions may call, by name."""
 
@@ -61,12 +63,14 @@ class Expression:
             tree = ast.parse(text.strip(), mode="eval")
         except SyntaxError as error:
             raise ExpressionError(f"'{text}': {error.msg}") from error
+        except (ValueError, RecursionError, MemoryError) as error:  # bytes that are no text; a hundred brackets
+            raise ExpressionError(f"'{text:.60}': cannot be read; write it shorter ({error})") from error
         for node in ast.walk(tree):
             self._check(node)
         called = {node.func for node in ast.walk(tree) if isinstance(node, ast.Call)}
         names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and node not in called}
         self._namespaces = sorted(names - set(self._words))
-        self._code = compile(tree, "<condition>", "eval")
+        self._code = compile(Bounding().visit(tree), "<condition>", "eval")
 
     def value(self, newest: Callable[[str], Any]) -> Any:
         """Returns the value; `newest` gives the newest message of a channel.
@@ -76,6 +80,7 @@ class Expression:
         """
         known: dict[str, Any] = {name: _bound(word, newest) for name, word in self._words.items()}
         known |= {name: Namespace(name, newest) for name in self._namespaces}
+        known |= BOUNDED
         try:
             return eval(self._code, {"__builtins__": {}}, known)
         except (AttributeError, KeyError, IndexError, TypeError, ValueError, ArithmeticError) as error:

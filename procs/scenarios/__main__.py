@@ -30,14 +30,15 @@ def main() -> int:
             verdict = outcome(scenario)
         except ExpressionError as error:
             print(f"{path}: {error}", file=sys.stderr)
-            return 2
+            wrong = True
+            continue
         failed += not verdict.ok
         print(
             f"{'ok    ' if verdict.ok else 'failed'} {path.stem} ({verdict.time_s:.1f} s)",
             *verdict.broken,
             sep="\n       ",
         )
-    return int(failed > 0)
+    return 2 if wrong else int(failed > 0)
 
 
 if __name__ == "__main__":

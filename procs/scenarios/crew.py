@@ -61,6 +61,12 @@ class Crew(Component):
         self.refused: list[str] = []
         """Actions that the simulator or the referee did not carry out, and why."""
 
+    @property
+    def unanswered(self) -> list[str]:
+        """Actions that wait for their time, and how many have no answer yet."""
+        late = [f"not given: the command at {each.at_s:g} s" for each in self._left]
+        return late + ([f"without an answer: {len(self._asked)} commands"] if self._asked else [])
+
     def loop(self) -> None:
         while self._left and self._left[0].at_s * 1e6 <= self.clock.now_us:
             self._do(self._left.pop(0))

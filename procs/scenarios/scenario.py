@@ -4,10 +4,10 @@ from pathlib import Path
 from typing import Any, get_type_hints
 
 import yaml
-from pydantic import NonNegativeInt, ValidationError
+from pydantic import FiniteFloat, NonNegativeInt, ValidationError
 
 from fwk import Component, Config
-from fwk.testing import Expectations, MemorySystem, Verdict, play
+from fwk.testing import Expectations, Expression, ExpressionError, MemorySystem, Verdict, play
 from lcmtypes.soccer import place_ball_t
 from procs.behaviour.agent import Agent
 from procs.behaviour.navigator import Navigator
@@ -20,12 +20,12 @@ from procs.model.robot import team_of
 from procs.referee.referee import Referee, RefereeConfig
 from procs.scenarios.crew import Action, Crew
 from procs.scenarios.dummy import Dummy
-from procs.scenarios.mistakes import field_mistakes, robot_mistakes, settings_mistakes, texts_of
+from procs.scenarios.mistakes import field_mistakes, place_mistakes, robot_mistakes, settings_mistakes, texts_of
 from procs.scenarios.perfect_world import PerfectWorldModel
 from procs.scenarios.words import WORDS
 from procs.simulation.percepts import Percepts
 from procs.simulation.radio import Radio
-from procs.simulation.simulator import Simulator
+from procs.simulation.simulator import Simulator, SimulatorConfig
 from procs.world_model.world_model import WorldModel
 
 BOOK = Path(__file__).parent / "book"
@@ -63,7 +63,7 @@ class Scenario(Expectations):
     """Robots with all their components; their percepts are drawn from the truth, with errors."""
     dummies: list[str] = []
     """Robots that stand still."""
-    places: dict[str, tuple[float, float, float]] = {}
+    places: dict[str, tuple[FiniteFloat, FiniteFloat, FiniteFloat]] = {}
     """Start of robots: x in m, y in m, heading in rad (world frame); others take their default place."""
     ball: dict[str, float] = {}
     """Place and velocity of the ball once play has begun, as in `place_ball_t`; empty: the kick-off."""
@@ -112,9 +112,39 @@ def _mistakes(scenario: Scenario) -> list[str]:
     except ValidationError as error:
         found += texts_of(error, "rules", list(RefereeConfig.model_fields))
     found += settings_mistakes(scenario.settings, configs)
+    for text in (*scenario.eventually, *scenario.in_order, *scenario.always, *scenario.at_end):
+        try:
+            Expression(text, WORDS)
+        except ExpressionError as error:
+            found.append(str(error))
+    for place, action in enumerate(scenario.commands):
+        if action.at_s >= scenario.time_s:
+            found.append(f"commands.{place}: at_s is {action.at_s:g}; the scenario ends at {scenario.time_s:g} s")
+    if not found:
+        found += place_mistakes(_simulator_settings(scenario))
+    if not found:
+        found += _unknown_in(scenario)
     if not (scenario.eventually or scenario.in_order or scenario.always or scenario.at_end):
         found.append("nothing has to happen; give eventually, in_order, always or at_end")
     return found
+
+
+def _unknown_in(scenario: Scenario) -> list[str]:
+    """Returns the conditions that name a channel, field, robot or state that the first tick does not have."""
+    system, found = system_of(scenario), []
+    system.tick()
+    for text in (*scenario.eventually, *scenario.in_order, *scenario.always, *scenario.at_end):
+        try:
+            Expression(text, WORDS).value(system.newest)
+        except ExpressionError as error:
+            if isinstance(error.__cause__, (AttributeError, KeyError, OverflowError, TypeError)):
+                found.append(str(error))
+    return found
+
+
+def _simulator_settings(scenario: Scenario) -> SimulatorConfig:
+    given = {"starts": scenario.places, "realism": scenario.realism}
+    return SimulatorConfig.model_validate(given | scenario.settings.get("world/simulator", {}))
 
 
 def _config(kind: type[Component]) -> type[Config] | None:
@@ -175,5 +205,10 @@ def outcome(scenario: Scenario) -> Verdict:
     verdict = play(system, scenario, WORDS)
     crew = system.runners[CREW].component
     assert isinstance(crew, Crew)
+    while verdict.ok and crew.unanswered and verdict.time_s < scenario.time_s - 1e-9:  # it ended before its commands
+        system.tick()
+        verdict.time_s = system.now_us / 1e6
     verdict.broken += [f"refused: {reason}" for reason in crew.refused]
+    if verdict.ok:
+        verdict.broken += crew.unanswered
     return verdict

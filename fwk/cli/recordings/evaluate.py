@@ -3,6 +3,8 @@
 import hashlib
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 from typing import Annotated
@@ -10,12 +12,12 @@ from typing import Annotated
 import typer
 
 from fwk.cli.arguments import seconds
-from fwk.cli.output import BAD_INPUT
+from fwk.cli.output import BAD_INPUT, FAILED
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.model.errors import PlanError
 from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
-from fwk.testing.campaign import Campaign, CampaignError, Evaluation, executor_of
+from fwk.testing.campaign import Campaign, CampaignError, Evaluation, FolderError, executor_of
 
 
 def eval(  # noqa: A001 - the name of the command
@@ -38,7 +40,7 @@ def eval(  # noqa: A001 - the name of the command
     FOLDER gets the result of each seed, and what the launch file's evaluation makes of them: tables, pictures.
     A cluster needs: pip install 'fwk[eval]'; its workers need this project and the launch file at the same place.
 
-    Exit codes: 0 measured; 1 a run failed, or there is no cluster; 2 bad input.
+    Exit codes: 0 measured; 1 a run failed, or there is no cluster; 2 bad input, or a folder that cannot hold results.
     """
     try:
         plan = load_plan(file, LaunchOptions(sets=sets or ()))
@@ -50,38 +52,63 @@ def eval(  # noqa: A001 - the name of the command
         raise typer.Exit(BAD_INPUT)
     use_folders(plan.folders)
     numbers, folder = _numbers(seeds), out or Path(f"eval-{plan.name}")
+    about = {"file": plan.file, "time_s": time_s, "by": plan.evaluation, "plan": _digest(plan)}
+    work = Evaluation(plan.evaluation, plan.folders, tuple(sets or ()))
     try:
-        about = {"file": plan.file, "time_s": time_s, "by": plan.evaluation, "plan": _digest(plan)}
-        campaign = Campaign(folder, about | ({"sets": sets} if sets else {}))
-    except OSError as error:
-        typer.echo(f"error: --out {folder}: {error.strerror}", err=True)
-        raise typer.Exit(BAD_INPUT) from error
+        with _refused_by(folder):
+            campaign = Campaign(folder, about | ({"sets": sets} if sets else {}))
+        failure = _play(campaign, work, file, time_s, numbers, jobs, cluster)
+        results, text = campaign.results(numbers), ""
+        if results:
+            with _refused_by(folder):
+                text = import_module(plan.evaluation.partition(":")[0]).report(results, folder)
     except CampaignError as error:
         typer.echo(f"error: {error}", err=True)
-        raise typer.Exit(1) from error
-    work = Evaluation(plan.evaluation, plan.folders, tuple(sets or ()))
-    failure = _play(campaign, work, file, time_s, numbers, jobs, cluster)
-    if results := campaign.results(numbers):
-        typer.echo(import_module(plan.evaluation.partition(":")[0]).report(results, folder))
+        raise typer.Exit(BAD_INPUT if isinstance(error, FolderError) else FAILED) from error
+    if results:
+        typer.echo(text)
     if failure:
         typer.echo(f"error: {failure}", err=True)
-        raise typer.Exit(1)
+        raise typer.Exit(FAILED)
 
 
 def _play(campaign: Campaign, work: Evaluation, file: str, time_s: float, seeds: range, jobs: int, cluster: str) -> str:
-    """Plays the runs that have no result yet; returns why runs have none, or an empty text."""
+    """Plays the runs that have no whole result yet; returns why runs have none, or an empty text.
+
+    Raises:
+        FolderError: a result cannot be read or written.
+    """
+    for damaged, flaw in campaign.damaged(seeds).items():
+        typer.echo(f"note: {damaged} is damaged: {flaw}; its seed is played again", err=True)
     left = campaign.missing(seeds)
+    if not left:
+        return ""
     label = f"{len(left)} of {len(seeds)} runs"
     try:
         with (
-            executor_of(jobs or os.cpu_count() or 1, cluster) as executor,
+            executor_of(min(jobs or os.cpu_count() or 1, len(left)), cluster) as executor,
             typer.progressbar(length=len(left), label=label, file=sys.stderr) as bar,
         ):
             for _ in campaign.play(work, file, time_s, left, executor):
                 bar.update(1)
+    except FolderError:
+        raise
     except CampaignError as error:
         return str(error)
     return ""
+
+
+@contextmanager
+def _refused_by(folder: Path) -> Iterator[None]:
+    """Names what cannot be read or written in the folder of the results.
+
+    Raises:
+        FolderError: something cannot be.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise FolderError(f"--out {error.filename or folder}: {error.strerror or error}") from error
 
 
 def _digest(plan: Plan) -> str:

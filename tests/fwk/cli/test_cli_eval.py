@@ -16,8 +16,9 @@ import pytest
 from typer.testing import CliRunner
 
 from fwk.cli.commands import app
+from fwk.cli.recordings import evaluate
 from fwk.testing import campaign
-from fwk.testing.campaign import Campaign, CampaignError, executor_of
+from fwk.testing.campaign import Campaign, CampaignError, FolderError, executor_of
 from tests.fwk.cli.cli_eval_parts import measured
 
 LAUNCH = """
@@ -55,6 +56,19 @@ def test_interrupted_evaluation_resumes(launch: Path) -> None:
     kept = launch.parent / "eval-it" / "seed-12.json"
     kept.write_text(kept.read_text().replace("12", "120"))  # it is not played again
     assert evaluated(str(launch), "--seeds", "12", "--jobs", "1")[:2] == (0, "120\n")
+
+
+def test_no_more_processes_than_missing_runs(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[int] = []
+
+    def counted(jobs: int, cluster: str) -> Any:
+        asked.append(jobs)
+        return ThreadPoolExecutor(jobs)
+
+    monkeypatch.setattr(evaluate, "executor_of", counted)
+    for seeds, jobs in (("1..2", "99999"), ("1..3", "400"), ("1..3", "400"), ("1..9", "4")):
+        assert evaluated(str(launch), "--seeds", seeds, "--jobs", jobs)[0] == 0
+    assert asked == [2, 1, 4]
 
 
 @pytest.mark.parametrize(
@@ -116,6 +130,70 @@ def test_evaluation_that_takes_no_settings_is_named(launch: Path) -> None:
     assert evaluated(str(launch), "--seeds", "1", "--jobs", "1")[0] == 0
     code, _, said = evaluated(str(launch), "--seeds", "1", "--jobs", "1", "--set", "period_s=0.1", "-o", "other")
     assert (code, "without_settings takes no settings; give it a fourth parameter" in said) == (1, True)
+
+
+DAMAGES = [b"", b'{"seed": 1', b"{}", b"\xff\xfe\x00", b"[" * 99_999]
+
+
+@pytest.mark.parametrize("content", DAMAGES, ids=["empty", "truncated", "says nothing", "garbage", "deep"])
+def test_damaged_result_is_named_and_played_again(launch: Path, content: bytes) -> None:
+    words = (str(launch), "--seeds", "1..3", "--jobs", "1")
+    assert evaluated(*words)[0] == 0
+    damaged = launch.parent / "eval-it" / "seed-2.json"
+    damaged.write_bytes(content)
+    code, table, said = evaluated(*words)
+    assert (code, table) == (0, "1 2 3\n")
+    assert f"note: {Path('eval-it/seed-2.json')} is damaged: it " in said
+    assert "; its seed is played again\n" in said
+    assert json.loads(damaged.read_text())["seed"] == 2
+    assert "damaged" not in evaluated(*words)[2]
+
+
+def test_damaged_result_whose_run_fails_is_not_reported(launch: Path) -> None:
+    assert evaluated(str(launch), "--seeds", "12", "--jobs", "1")[0] == 0
+    (launch.parent / "eval-it" / "seed-13.json").write_text("{")
+    code, table, said = evaluated(str(launch), "--seeds", "12..13", "--jobs", "1")
+    assert (code, table) == (1, "12\n")
+    assert "error: 1 of 1 runs failed: seed 13: ValueError: an unlucky seed" in said
+
+
+@pytest.mark.parametrize("content", DAMAGES, ids=["empty", "truncated", "says nothing", "garbage", "deep"])
+def test_damaged_note_of_a_campaign_is_named(launch: Path, content: bytes) -> None:
+    words = (str(launch), "--seeds", "1", "--jobs", "1")
+    assert evaluated(*words)[0] == 0
+    (launch.parent / "eval-it" / "campaign.json").write_bytes(content)
+    code, _, said = evaluated(*words)
+    assert (code, "error: eval-it/campaign.json is damaged: it " in said) == (2, True)
+    assert said.endswith("this launch file and its settings, or choose another folder\n")
+
+
+@pytest.mark.parametrize("name", ["campaign.json", "seed-1.json", "seeds.txt"])
+def test_folder_in_the_place_of_a_file_is_named(launch: Path, name: str) -> None:
+    (launch.parent / "eval-it" / name).mkdir(parents=True)
+    code, _, said = evaluated(str(launch), "--seeds", "1", "--jobs", "1")
+    assert (code, f"eval-it/{name}" in said, "Is a directory" in said) == (2, True, True)
+
+
+def test_result_that_cannot_be_written_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    campaign = Campaign(tmp_path, {"file": "it"})
+    monkeypatch.setattr("os.fsync", fail)
+    with (
+        ThreadPoolExecutor(1) as executor,
+        pytest.raises(FolderError, match=r"seed-1\.json cannot be written: No space"),
+    ):
+        list(campaign.play(measured, "it", 1.0, [1], executor))
+    assert [file.name for file in tmp_path.iterdir()] == ["campaign.json"]
+
+
+@pytest.mark.parametrize(("result", "cause"), [({}, "which has no measurements"), ({1j}, "not JSON serializable")])
+def test_result_that_cannot_be_kept_fails_its_run(tmp_path: Path, result: Any, cause: str) -> None:
+    campaign = Campaign(tmp_path, {"file": "it"})
+    with ThreadPoolExecutor(1) as executor, pytest.raises(CampaignError, match=f"seed 1: .*{cause}"):
+        list(campaign.play(lambda *_: result, "it", 1.0, [1], executor))
+    assert campaign.missing([1]) == [1]
 
 
 def test_results_stay_when_another_run_fails(tmp_path: Path) -> None:

@@ -30,6 +30,8 @@ def twice(newest: Any) -> float:
         ("abs(r1.pose.x_m - 2.0) < 0.6", True),
         ("double == 3.0", True),
         ("half(r1.pose.x_m)", 0.75),
+        ("(r1.pose.x_m ** 2 + 2 ** 3) * 4 % 7", 41.0 % 7),
+        ("(1 << 3) + 2 ** -1", 8.5),
     ],
 )
 def test_value_of_a_condition(text: str, value: Any) -> None:
@@ -50,6 +52,29 @@ def test_value_of_a_condition(text: str, value: Any) -> None:
 def test_text_that_is_not_a_condition(text: str, message: str) -> None:
     with pytest.raises(ExpressionError, match=message):
         Expression(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("2 ** 10 ** 10 > 3", r"OverflowError: the result of '\*\*' is too large"),
+        ("((9 ** 99) ** 99) ** 99 > 3", r"'\*\*' is too large"),
+        ("1 << 10 * 999999999", "'<<' is too large"),
+        ("9 ** 200 * 9 ** 200 > 3", r"'\*' is too large"),
+        ("len('ab' * 999999999) > 3", r"TypeError: '\*' takes numbers, not str"),
+        ("len(999999999 * world.state.names) > 3", r"'\*' takes numbers, not list"),
+        ("'%999999999d' % 1 == 'a'", "'%' takes numbers, not str"),
+    ],
+)
+@pytest.mark.timeout(5)
+def test_condition_that_would_take_too_long(text: str, message: str) -> None:
+    with pytest.raises(ExpressionError, match=message):
+        Expression(text).value(newest)
+
+
+def test_condition_too_deep_to_be_read() -> None:
+    with pytest.raises(ExpressionError, match="cannot be read; write it shorter"):
+        Expression("-" * 99_999 + "1")
 
 
 @pytest.mark.parametrize(

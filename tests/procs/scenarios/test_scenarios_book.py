@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 
-from fwk.testing import ExpressionError
 from procs.scenarios import __main__ as command
 from procs.scenarios import evaluation
 from procs.scenarios.scenario import BOOK, ScenarioError, read, run
@@ -63,9 +62,14 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
         ("commands: [{place_ball: {x: 1}}]", ScenarioError, "commands.0: place_ball: there is no 'x'; there are x_m"),
         ("commands: [{place_robot: {x_m: left}}]", ScenarioError, "x_m is 'left'; it should be a number"),
         ("robots: [", ScenarioError, "mine.yaml"),
-        ("eventually: ['x(ball']", ExpressionError, "never closed"),
-        ("dummies: [cyan2]\neventually: [x(cyan3) > 0]", ExpressionError, "no robot 'cyan3'"),
-        ("dummies: [cyan2]\neventually: [world.game.score > 0]", ExpressionError, "world/game"),
+        ("robots: [cyan2]\nplaces: {cyan2: [100, 0, 0]}\nat_end: [ball_speed < 1]", ScenarioError, "outside the walls"),
+        ("dummies: [a1, b1]\nplaces: {a1: [0, 0, 0], b1: [0, 0, 0]}\nat_end: [ball]", ScenarioError, "0 m apart"),
+        ("robots: [cyan2]\nplaces: {cyan2: [.nan, 0, 0]}", ScenarioError, "places.cyan2.0: .* finite number"),
+        ("at_end: [ball]\ntime_s: 1\ncommands: [{at_s: 1, place_ball: {}}]", ScenarioError, "at_s is 1; the scenario"),
+        ("robots: [cyan1]\nat_end: [frobnicate(cyan1)]", ScenarioError, "calls only abs, ball"),
+        ("eventually: ['x(ball']", ScenarioError, "never closed"),
+        ("dummies: [cyan2]\neventually: [x(cyan3) > 0]", ScenarioError, "no robot 'cyan3'"),
+        ("dummies: [cyan2]\neventually: [world.game.score > 0]", ScenarioError, "world/game"),
     ],
 )
 def test_bad_scenario_is_named(tmp_path: Path, text: str, error: type[Exception], message: str) -> None:
@@ -104,6 +108,24 @@ def test_command_that_is_refused_breaks_a_scenario(tmp_path: Path) -> None:
     text = "dummies: [cyan2]\ncommands: [{referee: {name: pause}}]\nalways: [x(cyan2) < 0]\ntime_s: 0.3\n"
     (refused,) = run(written(tmp_path, text)).broken
     assert refused.startswith("refused: no command 'pause'; there are kickoff")
+
+
+@pytest.mark.parametrize(
+    ("at_s", "condition", "broken"),
+    [
+        (0.28, "at_end: [x(cyan2) < 0]", "without an answer: 1 commands"),
+        (0.28, "eventually: [x(cyan2) < 0]", "without an answer: 1 commands"),
+    ],
+)
+def test_command_without_an_answer_breaks(tmp_path: Path, at_s: float, condition: str, broken: str) -> None:
+    text = f"dummies: [cyan2]\ncommands: [{{at_s: {at_s}, place_ball: {{x_m: 1}}}}]\n{condition}\ntime_s: 0.3\n"
+    assert run(written(tmp_path, text)).broken == [broken]
+
+
+@pytest.mark.parametrize("text", ['state("offside")', "world.game_state.goals", "cyan9.role.value", "2 ** 10 ** 10"])
+def test_condition_that_cannot_be_judged_is_a_mistake(tmp_path: Path, text: str) -> None:
+    with pytest.raises(ScenarioError, match=r"mine.yaml: .*Error: "):
+        read(written(tmp_path, f"dummies: [cyan2]\nalways: ['{text}']\n"))
 
 
 def test_evaluation_of_the_book_counts_seeds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
