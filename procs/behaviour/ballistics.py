@@ -16,8 +16,9 @@ _CARRY_S = 0.25
 """A robot that drives reaches what a robot at rest reaches from the place where it will be after this time."""
 _STANDING = Point(0.0, 0.0)
 _GRAVITY_M_S2 = 9.81
-_LOB_M_S, KICK_M_S = 11.2, 11.9
-"""Highest speed of a lob over the ground, and of any kick: the faster, the less its error changes the height."""
+_LOB_SPARE_M_S, _SPARE_M_S = 0.8, 0.1
+"""A lob over the ground, and any kick, stay so far below the kicker's limit. A lob is as fast as it can be: the faster,
+the less its error changes the height."""
 _OVER_M = 0.09
 """The top of a lob's flight, which passes over robots and under the bar, is so far above a robot."""
 _KEEPER_M = 0.45
@@ -57,9 +58,10 @@ def lob(distance_m: float, bodies: Bodies, carried_m_s: float = 0.0) -> Lob:
     distance_m = max(2 * _KEEPER_M, distance_m)
     rise_s = math.sqrt(2 * (bodies.robot_height_m + _OVER_M) / _GRAVITY_M_S2)
     slow_m_s = (distance_m - _KEEPER_M) / rise_s
-    speed_m_s = min(_LOB_M_S + carried_m_s, slow_m_s)
+    speed_m_s = min(bodies.kick_limit_m_s - _LOB_SPARE_M_S + carried_m_s, slow_m_s)
     lift_m_s = _lift_m_s(distance_m / speed_m_s, rise_s)
-    kick_m_s = math.sqrt(KICK_M_S**2 - min(KICK_M_S / 2, lift_m_s) ** 2)
+    hardest_m_s = hardest_kick_m_s(bodies)
+    kick_m_s = math.sqrt(hardest_m_s**2 - min(hardest_m_s / 2, lift_m_s) ** 2)
     speed_m_s = min(speed_m_s, kick_m_s + carried_m_s)
     return Lob(speed_m_s, _lift_m_s(distance_m / speed_m_s, rise_s))
 
@@ -82,6 +84,11 @@ def ball_after(ball: Ball, time_s: float, bodies: Bodies) -> Point:
     rolling_s = min(time_s, speed_m_s / rolling_m_s2)
     share = rolling_s - rolling_m_s2 * rolling_s * rolling_s / (2 * speed_m_s)
     return Point(ball.place.x_m + ball.velocity_m_s.x_m * share, ball.place.y_m + ball.velocity_m_s.y_m * share)
+
+
+def hardest_kick_m_s(bodies: Bodies) -> float:
+    """Returns the highest speed that is asked of a kick."""
+    return bodies.kick_limit_m_s - _SPARE_M_S
 
 
 def kick_speed_m_s(distance_m: float, arrival_m_s: float, bodies: Bodies) -> float:

@@ -20,6 +20,8 @@ class Bodies(NamedTuple):
     """Deceleration of the sliding ball."""
     rolling_m_s2: float
     """Deceleration of the rolling ball."""
+    kick_limit_m_s: float
+    """Highest speed of a kicked ball."""
     rolling_share: float
     """Share of a kick's speed that is left when the ball begins to roll."""
 
@@ -34,6 +36,7 @@ class Bodies(NamedTuple):
             beside_m=robot.radius_m + ball.radius_m,
             sliding_m_s2=ball.sliding_m_s2,
             rolling_m_s2=ball.rolling_m_s2,
+            kick_limit_m_s=robot.kick_limit_m_s,
             rolling_share=ball.rolling_share,
         )
 

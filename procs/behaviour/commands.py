@@ -1,7 +1,7 @@
 """What the skills can carry out: places where a robot or the ball can be, and speeds that robot or kicker reach."""
 
 from lcmtypes.soccer import skill_command_t
-from procs.behaviour.ballistics import KICK_M_S, kick_speed_m_s
+from procs.behaviour.ballistics import hardest_kick_m_s, kick_speed_m_s
 from procs.behaviour.bodies import Bodies
 from procs.model.field import Field, Point
 from procs.model.geometry import clamp, plausible
@@ -36,8 +36,9 @@ def mistake(command: skill_command_t, field: Field, bodies: Bodies) -> str:
             return f"{name} is {value_m:g}; between the walls {what} can be from {-limit_m:g} to {limit_m:g}"
     if command.speed_m_s < 0.0:
         return f"speed_m_s is {command.speed_m_s:g}; it should be above 0, or 0 for the skill's own speed"
-    if command.skill in _ROLLS and kick_speed_m_s(0.0, command.speed_m_s, bodies) > KICK_M_S:
-        fastest_m_s = KICK_M_S * command.speed_m_s / kick_speed_m_s(0.0, command.speed_m_s, bodies)
+    hardest_m_s, kick_m_s = hardest_kick_m_s(bodies), kick_speed_m_s(0.0, command.speed_m_s, bodies)
+    if command.skill in _ROLLS and kick_m_s > hardest_m_s:
+        fastest_m_s = hardest_m_s * command.speed_m_s / kick_m_s
         return f"speed_m_s is {command.speed_m_s:g}; after the hardest kick the ball rolls at {fastest_m_s:.1f} at most"
     return ""
 

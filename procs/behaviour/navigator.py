@@ -76,10 +76,10 @@ class Navigator(Component):
         target, model, state = self.drive_target.value, self.world_model.value, self.navigator_state.value
         state.target_id = target.target_id
         state.error = navigator_state_t.OK
-        if self._blind and model.localized:
+        here = plausible(model.x_m, model.y_m, model.heading_rad)
+        if self._blind and model.localized and here:
             vx_m_s, vy_m_s = motion.turned(self._before.vx_m_s, self._before.vy_m_s, model.heading_rad)
             self._before, self._blind = Velocity(vx_m_s, vy_m_s, self._before.omega_rad_s), False
-        here = plausible(model.x_m, model.y_m, model.heading_rad)
         if not here or not model.localized or not self._fresh(self.world_model):
             state.error, state.arrived, state.distance_m = navigator_state_t.LOST, False, 0.0
             if not self._drive_blind():

@@ -1,24 +1,33 @@
 """Driver of the kicker: carries out kicks once ball and charge are there, and handles the ball."""
 
 import math
+from typing import NamedTuple
 
 from pydantic import PositiveFloat
 
 from fwk import Clock, Component, Config, Logger, Reads, Request, Serves, Writes
 from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_drive_t, kicker_sensor_t, kicker_state_t
 from procs.model.geometry import clamp
+from procs.model.robot import ROBOT, RobotModel
 
-_NO_KICK = (0.0, 0.0)
 _STEEPEST_RAD = math.pi / 3  # of a lob
 _KICKS_MAX = 2**31 - 1
 """Kicks are numbered from 1 to this number, then from 1 again."""
 
 
+class _Asked(NamedTuple):
+    """Kick that the hardware was told."""
+
+    kick_id: int
+    speed_m_s: float
+    elevation_rad: float
+
+
 class KickerConfig(Config):
     """Settings of the kicker's driver."""
 
-    speed_limit_m_s: PositiveFloat = 12.0
-    """Highest speed of a kick."""
+    robot: RobotModel = ROBOT
+    """The robot, and with it the highest speed of a kick."""
     command_timeout_s: PositiveFloat = 0.25
     """Without a newer dribble command ball handling stops; a kick that the hardware has not carried out has failed."""
 
@@ -27,7 +36,8 @@ class Kicker(Component):
     """State of the kicker when sensors are read, its drive when actuators act.
 
     A kick waits for ball and charge until it expires. It is accepted when the hardware is told to kick, and done
-    when the hardware has kicked.
+    when the hardware has kicked. Kicks that this driver did not ask for do not count, as those before it
+    was restarted: their speed is unknown.
     """
 
     stage = ("sensor_acquire", "act_exec")
@@ -43,14 +53,15 @@ class Kicker(Component):
 
     def init(self) -> None:
         self._kicks = 0
-        self._asked = _NO_KICK  # speed in m/s and elevation in rad of the newest kick that the hardware was told
+        self._asked: _Asked | None = None  # newest kick that the hardware has not carried out
         self._asked_us = 0  # when it was told
         self._late = False
 
     def loop(self) -> None:
         for sensor in self.kicker_sensor.fresh:
-            if sensor.kick_id != self.kicker_state.value.kick_id:
-                self._kicked(sensor.kick_id)
+            if self._asked is not None and sensor.kick_id == self._asked.kick_id:
+                self._kicked(self._asked)
+            self.kicker_state.value.kick_id = sensor.kick_id
         if self.clock.stage == "act_exec":
             self._act()
         else:
@@ -62,12 +73,11 @@ class Kicker(Component):
         self.kicker_drive.value.kick_id = self.kicker_sensor.value.kick_id
         self.kicker_drive.write()
 
-    def _kicked(self, kick_id: int) -> None:
+    def _kicked(self, asked: _Asked) -> None:
         self._kicks += 1
         state = self.kicker_state.value
-        state.kick_id = kick_id
-        state.kick_speed_m_s, state.kick_elevation_rad = self._asked
-        self._asked = _NO_KICK
+        state.kick_speed_m_s, state.kick_elevation_rad = asked.speed_m_s, asked.elevation_rad
+        self._asked = None
         for request in self.kick.open:
             request.done()
 
@@ -82,14 +92,15 @@ class Kicker(Component):
 
     def _act(self) -> None:
         sensor, drive = self.kicker_sensor.value, self.kicker_drive.value
-        drive.kick_id, (drive.kick_m_s, drive.elevation_rad) = sensor.kick_id, _NO_KICK
+        drive.kick_id, drive.kick_m_s, drive.elevation_rad = sensor.kick_id, 0.0, 0.0
         if sensor.ball_held and sensor.charged and (request := self._next_kick()):
             self._fail_open("a newer kick replaced it", besides=request)
             request.accept()
             drive.kick_id = sensor.kick_id % _KICKS_MAX + 1
-            drive.kick_m_s = min(request.value.speed_m_s, self.config.speed_limit_m_s)
             drive.elevation_rad = clamp(request.value.elevation_rad, 0.0, _STEEPEST_RAD)
-            self._asked, self._asked_us = (drive.kick_m_s, drive.elevation_rad), self.clock.now_us
+            drive.kick_m_s = self.config.robot.kicked_m_s(request.value.speed_m_s, drive.elevation_rad)
+            self._asked = _Asked(drive.kick_id, drive.kick_m_s, drive.elevation_rad)
+            self._asked_us = self.clock.now_us
         drive.dribble = self._is_fresh() and self.dribble_command.value.on
         self.kicker_drive.write()
 

@@ -11,9 +11,9 @@ from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt
 from procs.model.ball import BallModel
 
 CYAN, MAGENTA = "cyan", "magenta"
+"""Cyan defends the goal at negative x."""
 TEAM_NUMBERS = {CYAN: 1, MAGENTA: 2}
 """Number of each team in messages; 0 is none, or unknown."""
-"""Cyan defends the goal at negative x."""
 
 _NAME = re.compile(r"(.*?)(\d*)")
 
@@ -33,6 +33,8 @@ class RobotModel(BaseModel):
     """Distance from the robot's middle to each wheel, in metres."""
     wheel_limit_m_s: PositiveFloat = 3.5
     """Highest rim speed of the wheels, in m/s."""
+    kick_limit_m_s: PositiveFloat = 12.0
+    """Highest speed of a kicked ball, in m/s, whatever its elevation. MRA takes up to 12 m/s for plausible."""
     mouth_half_angle_deg: PositiveFloat = 30.0
     """The front is cut off between these angles to the left and the right of forward."""
 
@@ -44,6 +46,10 @@ class RobotModel(BaseModel):
     def held_ball_m(self, ball: BallModel) -> float:
         """Returns the distance from the robot's middle to the middle of a ball in the mouth."""
         return self.mouth_m + ball.radius_m
+
+    def kicked_m_s(self, speed_m_s: float, elevation_rad: float) -> float:
+        """Returns the speed over the ground of a kick that was asked for: a steep one is slower than the limit."""
+        return min(speed_m_s, self.kick_limit_m_s * math.cos(elevation_rad))
 
 
 ROBOT = RobotModel()

@@ -8,7 +8,7 @@ from pydantic import Field
 from fwk import Clock, Component, Config, Reads, Writes
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
-from procs.model.geometry import plausible
+from procs.model.covariance import is_covariance
 from procs.model.units import US_PER_S
 
 
@@ -73,5 +73,5 @@ def _mean(one: obstacle_t, other: obstacle_t) -> obstacle_t:
 def _covariance(obstacle: obstacle_t) -> Floats | None:
     """Returns the covariance (2, 2) in m²; None for one that cannot be."""
     (xx, xy), (yx, yy) = obstacle.covariance_m2
-    sound = plausible(xx, xy, yx, yy) and xx > 0 and xx * yy > xy * yx
-    return np.array(((xx, xy), (yx, yy))) if sound else None
+    invertible = is_covariance(obstacle.covariance_m2) and xx > 0 and xx * yy > xy * yx
+    return np.array(((xx, xy), (yx, yy))) if invertible else None

@@ -38,7 +38,7 @@ class Kicks:
     """Kicks of a robot and its mates; each kick is returned once."""
 
     def __init__(self) -> None:
-        self._own = 0
+        self._own: int | None = None
         self._of_mates: dict[str, int] = {}
         self._messages = 0
 
@@ -52,22 +52,34 @@ class Kicks:
         self._messages = max(0, self._messages - 1)
 
     def own(self, kicker: kicker_state_t, view: OwnView, mouth_m: float, passed_s: float) -> Kick | None:
-        """Returns the robot's own new kick, if there is one, at the middle of the `passed_s` since the last tick."""
+        """Returns the robot's own new kick, if there is one, at the middle of the `passed_s` since the last tick.
+
+        The first number tells of kicks long ago; one that falls is that of a driver that was restarted. A robot that is
+        lost does not know where it kicks.
+        """
         known, self._own = self._own, kicker.kicks
-        if kicker.kicks == known or not plausible(kicker.kick_speed_m_s):
+        if (
+            known is None
+            or kicker.kicks <= known
+            or not view.localized
+            or not plausible(kicker.kick_speed_m_s, _lift_m_s(kicker))
+        ):
             return None
         self._messages = _MESSAGES
         return Kick(view.kicked_m_s(kicker.kick_speed_m_s, mouth_m), _lift_m_s(kicker), passed_s / 2)
 
     def of_mates(self, told: Iterable[tuple[team_message_t, Mate]], now_us: int, mouth_m: float) -> list[Kick]:
-        """Returns the new kicks in messages of mates; `mouth_m` is from a robot's middle to a held ball's."""
+        """Returns the new kicks in messages of mates that know their places.
+
+        `mouth_m` is from a robot's middle to a held ball's.
+        """
         found = []
         for message, mate in told:
             known = self._of_mates.get(mate.name, message.kicks)
             self._of_mates[mate.name] = message.kicks
             age_s = (now_us - message.kick_us) / US_PER_S
             sound = plausible(message.kick_vx_m_s, message.kick_vy_m_s, message.kick_vz_m_s)
-            if message.kicks != known and sound and 0.0 <= age_s <= _OLDEST_S:
+            if message.kicks > known and mate.localized and sound and 0.0 <= age_s <= _OLDEST_S:
                 mouth = mouth_of(mate, mouth_m, message.kick_us / US_PER_S)
                 velocity_m_s = np.array((message.kick_vx_m_s, message.kick_vy_m_s))
                 found.append(Kick(velocity_m_s, message.kick_vz_m_s, age_s, mouth))

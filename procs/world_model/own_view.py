@@ -7,6 +7,7 @@ import numpy as np
 
 from lcmtypes.robot import odometry_t
 from lcmtypes.soccer import ball_candidate_t, ball_percept_t, obstacle_percepts_t, obstacle_t, pose_t
+from procs.model.covariance import is_covariance
 from procs.model.frames import Floats, rotation, to_world, wrap
 from procs.model.geometry import plausible
 from procs.world_model.seen import Seen
@@ -38,8 +39,7 @@ class OwnView:
             before: the view `passed_s` ago.
             passed_s: see `before`.
         """
-        flat = [value for row in pose.covariance for value in row]
-        sound = plausible(pose.x_m, pose.y_m, pose.heading_rad, *flat)
+        sound = plausible(pose.x_m, pose.y_m, pose.heading_rad) and is_covariance(pose.covariance)
         self.localized = pose.localized and known and sound
         self.pose = np.array((pose.x_m, pose.y_m, pose.heading_rad)) if sound else np.zeros(3)
         self.covariance = np.array(pose.covariance) if sound else np.zeros((3, 3))

@@ -36,6 +36,9 @@ class RobotTracks:
         self.ages_s: Floats = np.zeros(0)
         """(n): time since each robot was last seen."""
         self._sightings: Indices = np.zeros(0, np.intp)
+        self.ids: Indices = np.zeros(0, np.intp)
+        """(n): number of each track since the first, which is 1; a robot that was lost gets a new one."""
+        self._begun = 0
 
     def __len__(self) -> int:
         return len(self._x)
@@ -119,6 +122,8 @@ class RobotTracks:
         self._p = np.concatenate((self._p, covariances))
         self.ages_s = np.concatenate((self.ages_s, np.full(count, age_s)))
         self._sightings = np.concatenate((self._sightings, np.ones(count, np.intp)))
+        self.ids = np.concatenate((self.ids, self._begun + 1 + np.arange(count)))
+        self._begun += count
 
     def _join(self) -> None:
         """Drops the less seen of two tracks in one place; of equals, the younger."""
@@ -138,7 +143,7 @@ class RobotTracks:
 
     def _keep(self, which: Flags) -> None:
         self._x, self._p = self._x[which], self._p[which]
-        self.ages_s, self._sightings = self.ages_s[which], self._sightings[which]
+        self.ages_s, self._sightings, self.ids = self.ages_s[which], self._sightings[which], self.ids[which]
 
 
 def _pairs(predicted_m: list[list[float]], positions_m: list[list[float]]) -> tuple[list[int], list[int]]:

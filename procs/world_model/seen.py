@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from procs.model.covariance import is_covariance
 from procs.model.frames import Flags, Floats
 from procs.model.geometry import plausible
 
@@ -41,10 +42,8 @@ class Seen:
         for (x_m, y_m), ((xx_m2, xy_m2), (yx_m2, yy_m2)), radius_m in zip(
             positions_m, covariances_m2, radii_m, strict=True
         ):
-            row = (x_m, y_m, xx_m2 + _LEAST_M2, xy_m2, yx_m2, yy_m2 + _LEAST_M2, radius_m)
-            proper = row[2] > 0 and row[5] > 0 and row[2] * row[5] > xy_m2 * yx_m2
-            if proper and plausible(*row):
-                rows.append(row)
+            if plausible(x_m, y_m, radius_m) and is_covariance(((xx_m2, xy_m2), (yx_m2, yy_m2))):
+                rows.append((x_m, y_m, xx_m2 + _LEAST_M2, xy_m2, yx_m2, yy_m2 + _LEAST_M2, radius_m))
         if not rows:
             return cls.NOTHING
         values = np.array(rows, np.float64)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from lcmtypes.soccer import team_message_t
+from procs.model.covariance import is_covariance
 from procs.model.frames import Floats, wrap
 from procs.model.geometry import plausible
 from procs.world_model.seen import Seen
@@ -15,10 +16,8 @@ def mate_of(message: team_message_t, now_s: float) -> Mate | None:
     """Returns the state of the sender; None if the message is from the future or holds impossible values."""
     values = (message.x_m, message.y_m, message.heading_rad, message.vx_m_s, message.vy_m_s)
     told_s = message.header.time_us / 1e6
-    if told_s > now_s or not plausible(*values):
+    if told_s > now_s or not plausible(*values) or not is_covariance(message.pose_covariance):
         return None
-    (xx_m2, xy_m2, _), (yx_m2, yy_m2, _), _ = message.pose_covariance
-    proper = plausible(xx_m2, xy_m2, yx_m2, yy_m2) and min(xx_m2, yy_m2, xx_m2 * yy_m2 - xy_m2 * yx_m2) >= 0.0
     return Mate(
         name=message.robot,
         role=message.role,
@@ -27,7 +26,7 @@ def mate_of(message: team_message_t, now_s: float) -> Mate | None:
         heading_rad=wrap(message.heading_rad),
         velocity_m_s=np.array((message.vx_m_s, message.vy_m_s)),
         localized=message.localized,
-        covariance_m2=np.array(((xx_m2, xy_m2), (yx_m2, yy_m2))) if proper else np.zeros((2, 2)),
+        covariance_m2=np.array(message.pose_covariance)[:2, :2],
         number=message.number,
         holds_ball=bool(message.ball_held),
         agreement=message.agreement,

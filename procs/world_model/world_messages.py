@@ -131,9 +131,10 @@ def _mate(mate: Mate, place: PlaceRow, now_s: float) -> mate_estimate_t:
 def _robots(tracks: RobotTracks) -> list[robot_estimate_t]:
     """Returns the tracks that are no ghosts."""
     states, covariances_m2 = tracks.states.tolist(), tracks.covariances[:, :2, :2].tolist()
-    ages_s, estimates = tracks.ages_s.tolist(), []
+    ages_s, ids, estimates = tracks.ages_s.tolist(), tracks.ids.tolist(), []
     for track in tracks.sure.tolist():
         estimate = robot_estimate_t()
+        estimate.id = ids[track]
         estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s = states[track]
         estimate.covariance_m2, estimate.age_s = covariances_m2[track], ages_s[track]
         estimates.append(estimate)

@@ -169,7 +169,8 @@ class WorldModel(Component):
         self, view: OwnView, team: Sequence[PlaceRow], told: list[tuple[team_message_t, Mate]], passed_s: float
     ) -> None:
         config, kicker = self.config, self.kicker_state.value
-        kicked = self._kicks.own(kicker, view, self._mouth_m, passed_s)
+        has_kicker = self.kicker_state.has_value
+        kicked = self._kicks.own(kicker, view, self._mouth_m, passed_s) if has_kicker else None
         if kicked:
             fill_kick(self.team_message.value, kicked, kicker.kicks, self.clock.now_us)
         kicks = self._kicks.of_mates(told, self.clock.now_us, self._mouth_m)

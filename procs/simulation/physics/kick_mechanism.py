@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from procs.model.robot import RobotModel
 from procs.simulation.physics.bodies import State
 from procs.simulation.physics.delay import DelayLine
 from procs.simulation.physics.mouth import Mouth
@@ -35,10 +36,13 @@ class Push(NamedTuple):
 class Kicker:
     """Kicker and ball handling of one robot. Without a ball in the mouth a kick has no effect."""
 
-    def __init__(self, mouth: Mouth, kicker: KickerSettings, noise: Noise, rng: np.random.Generator) -> None:
+    def __init__(
+        self, mouth: Mouth, robot: RobotModel, kicker: KickerSettings, noise: Noise, rng: np.random.Generator
+    ) -> None:
         self.mouth = mouth
         self.kick_id = 0
         """Newest kick that was fired."""
+        self._robot = robot
         self._settings = kicker
         self._noise = noise
         self._rng = rng
@@ -90,7 +94,7 @@ class Kicker:
 
     def _fire(self, speed_m_s: float, elevation_rad: float) -> Push | None:
         speed_error, direction_error = self._rng.standard_normal(2).tolist()
-        speed_m_s = min(speed_m_s, self._settings.limit_m_s * math.cos(elevation_rad))
+        speed_m_s = self._robot.kicked_m_s(speed_m_s, elevation_rad)
         self._work_j += self.mouth.ball_mass_kg * (speed_m_s / math.cos(elevation_rad)) ** 2 / 2
         if not self.mouth.holds_ball:
             return None

@@ -41,8 +41,6 @@ class HandlingSettings(_Settings):
 class KickerSettings(_Settings):
     """A kicker that drives the ball straight out of the mouth along the ground."""
 
-    limit_m_s: PositiveFloat = 12.0
-    """Highest speed it gives to a resting ball."""
     recharge_s: PositiveFloat = 1.5
     """After a kick, until the next is possible."""
     release_s: Annotated[float, Field(ge=0.0)] = 0.1

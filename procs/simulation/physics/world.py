@@ -67,7 +67,7 @@ class World:
             self._starts[name] = (starts or {}).get(name) or starting_pose(players.get(name), self._field)
             body.put(*self._starts[name])
             mouth = Mouth(body, self.ball, self._physics.handling, 1.0 - noise.handling_loss)
-            self.kickers[name] = Kicker(mouth, self._physics.kicker, noise, rng)
+            self.kickers[name] = Kicker(mouth, robot, self._physics.kicker, noise, rng)
             self.batteries[name] = Battery(self._physics.battery)
         self._contacts = Contacts(self._space, list(self.robots.values()))
         self._judge = LineJudge(self._field, self.ball.radius_m)

@@ -378,6 +378,21 @@ def test_senseless_numbers_do_no_harm(component: type[Component], value: float) 
             assert abs(command.omega_rad_s) <= 5.1
 
 
+@pytest.mark.parametrize("heading_rad", [math.nan, math.inf])
+def test_blind_robot_that_is_told_no_heading_stands(heading_rad: float) -> None:
+    bench = Bench(Navigator, "cyan2/navigator")
+    bench.port("world_model").put(localized=False)
+    bench.port("blind_drive").put(vx_m_s=1.0, enabled=True)
+    bench.iterate()
+    assert newest(bench, "motor_command").vx_m_s > 0.0
+    for _ in range(40):
+        bench.port("world_model").put(localized=True, heading_rad=heading_rad)
+        bench.iterate()
+        command = newest(bench, "motor_command")
+        assert math.isfinite(command.vx_m_s + command.vy_m_s + command.omega_rad_s)
+    assert (command.vx_m_s, command.vy_m_s, command.omega_rad_s) == (0.0, 0.0, 0.0)
+
+
 def test_stopped_navigator_leaves_the_motors_off() -> None:
     bench = navigate(5, x_m=5.0, heading_rad=math.pi / 2)
     bench.finalize()

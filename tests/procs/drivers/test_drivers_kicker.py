@@ -1,5 +1,6 @@
 """The kicker's driver: when it fires, waits, and drops a command."""
 
+import math
 from typing import Any
 
 import pytest
@@ -58,6 +59,24 @@ def test_kick_is_carried_out_once(kicker: Bench) -> None:
     assert answers(kicker) == [(1, answer_t.ACCEPTED), (1, answer_t.DONE)]
 
 
+def test_restarted_driver_does_not_count_earlier_kicks(kicker: Bench) -> None:
+    """The hardware has kicked seven times for the driver's predecessor."""
+    act(kicker, {**EMPTY, "kick_id": 7})
+    state = kicker.port("kicker_state").sent[-1]
+    assert (state.kick_id, state.kicks) == (7, 0)
+    kicker.kick.put(speed_m_s=8.0)
+    act(kicker, {**READY, "kick_id": 7})
+    act(kicker, {**EMPTY, "kick_id": 8})
+    state = kicker.port("kicker_state").sent[-1]
+    assert (state.kick_id, state.kicks, state.kick_speed_m_s) == (8, 1, 8.0)
+
+
+def test_restarted_hardware_does_not_count_as_a_kick(kicker: Bench) -> None:
+    act(kicker, {**EMPTY, "kick_id": 7})
+    act(kicker, {**EMPTY, "kick_id": 0})
+    assert kicker.port("kicker_state").sent[-1].kicks == 0
+
+
 def test_kick_that_waits_too_long_expires(kicker: Bench) -> None:
     kicker.kick.put(speed_m_s=8.0, expires_s=0.1)
     for _ in range(2):
@@ -104,6 +123,17 @@ def test_old_dribble_command_is_forgotten(kicker: Bench) -> None:
 def test_speed_is_limited(kicker: Bench) -> None:
     kicker.kick.put(speed_m_s=99.0)
     assert act(kicker, READY).kick_m_s == 12.0
+
+
+def test_steep_kick_is_told_as_slow_as_it_is() -> None:
+    """All kicks share one limit, of the robot's model; a lob spends part of it on height."""
+    kicker = Bench(Kicker, robot={"kick_limit_m_s": 6.0})
+    kicker.kick.put(speed_m_s=8.0, elevation_rad=1.0)
+    drive = act(kicker, READY)
+    act(kicker, {**EMPTY, "kick_id": 1})
+    state = kicker.port("kicker_state").sent[-1]
+    assert drive.kick_m_s == state.kick_speed_m_s == pytest.approx(6.0 * math.cos(1.0))
+    assert state.kick_elevation_rad == 1.0
 
 
 def test_ball_handling_follows_the_command(kicker: Bench) -> None:

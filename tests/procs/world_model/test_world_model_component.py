@@ -213,6 +213,41 @@ def test_sightings_with_impossible_covariances_are_left_out() -> None:
     assert (np.linalg.eigvalsh(seen.covariances_m2) > 0).all()
 
 
+def damaged(part: str, covariance: list[list[float]]) -> Robot:
+    """Returns a robot in one of whose ticks a message stated such a covariance; then it saw the ball for a second."""
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    port = robot.bench.port
+    for tick in range(45):
+        robot.sense(np.array((2.0, 0.0)), [])
+        if tick == 25:
+            mate = team_message_t(robot="cyan2", localized=True, ball_visible=True, ball_x_m=2.0)
+            mate.header.time_us = robot.bench.time_us
+            if part == "pose":
+                port("pose").put(localized=True, covariance=covariance)
+            elif part == "ball":
+                port("ball_percept").put(visible=True, x_m=2.0, covariance_m2=covariance)
+            elif part == "pose of a mate":
+                mate.pose_covariance = covariance
+            else:
+                mate.ball_covariance_m2 = covariance
+            port("team_inbox").put(messages=[mate])
+        robot.bench.iterate()
+        assert np.isfinite(robot.world.ball.covariance).all(), f"tick {tick}"
+    return robot
+
+
+@pytest.mark.parametrize(
+    "covariance", [[[1e-3, -1.0], [0.0, 1e-3]], [[1e-3, 0.01], [0.0, 1e-3]], [[-1.0, 0.0], [0.0, 1e-3]]]
+)
+@pytest.mark.parametrize("part", ["ball", "ball of a mate", "pose", "pose of a mate"])
+def test_ball_survives_what_is_no_covariance(part: str, covariance: list[list[float]]) -> None:
+    if part.startswith("pose"):
+        covariance = [[*covariance[0], 0.0], [*covariance[1], 0.0], [0.0, 0.0, 1e-3]]
+    world = damaged(part, covariance).world
+    assert (world.ball.x_m, world.ball.y_m) == pytest.approx((2.0, 0.0), abs=0.1)
+    assert [mate.name for mate in world.mates] == ([] if part == "pose of a mate" else ["cyan2"])
+
+
 def test_slipping_wheels_do_not_turn_what_the_robot_sees() -> None:
     """In a scrum the wheels turn at 3 rad/s; the gyro, and so the pose, knows that the robot does not."""
     robot, ball_m = Robot("cyan1", (0.0, 0.0, 0.0), seed=1), np.array((4.0, 0.0))

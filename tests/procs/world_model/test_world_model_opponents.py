@@ -39,6 +39,20 @@ def test_crossing_robots_keep_their_tracks() -> None:
     assert np.sqrt(np.mean(np.square(errors[15:]))) < 0.85 * np.sqrt(np.mean(np.square(raw)))
 
 
+def test_each_track_keeps_a_number_of_its_own() -> None:
+    """The first robot is lost and comes back: then it has a new number."""
+    tracks, places_m = RobotTracks(), np.array([[-2.0, 0.0], [0.0, 4.0]])
+    numbers = []
+    for tick in range(60):
+        tracks.predict(PERIOD_S, 0.5)
+        seen_m = places_m[1:] if 20 <= tick < 40 else places_m
+        tracks.see(seen_m, spreads(len(seen_m), 0.05))
+        numbers.append(dict(zip(tracks.states[:, 0].round().tolist(), tracks.ids.tolist(), strict=True)))
+    assert numbers[19] == {-2.0: 1, 0.0: 2}
+    assert numbers[39] == {0.0: 2}
+    assert numbers[59] == {-2.0: 3, 0.0: 2}
+
+
 def test_track_follows_a_robot_that_brakes_and_turns_round() -> None:
     """A robot drives at 2.5 m/s, brakes at 3 m/s2 and drives back; it is seen ten times a second."""
     rng, tracks = np.random.default_rng(2), RobotTracks()
