@@ -9,6 +9,7 @@ from fwk import Clock, Component, Config, Logger, Reads, Writes
 from lcmtypes.robot import motor_command_t, odometry_t, wheel_command_t, wheel_state_t
 from procs.drivers.odometry import Odometry
 from procs.drivers.ramp import Ramp, within_wheel_limit
+from procs.model.expected_errors import EXPECTED
 from procs.model.kinematics import (
     STANDSTILL,
     Velocity,
@@ -17,6 +18,7 @@ from procs.model.kinematics import (
     velocity_of,
     wheels_of,
 )
+from procs.model.realism import Realism, chosen
 from procs.model.robot import ROBOT, RobotModel
 from procs.model.units import US_PER_S
 from procs.model.wheel_messages import WheelReader
@@ -44,12 +46,14 @@ class BaseConfig(Config):
     """Limit of its change."""
     command_timeout_s: PositiveFloat = 0.25
     """The robot brakes to a standstill when its newest motor command is older."""
-    wheel_scale_sd: _Deviation = 0.03
-    """Relative error of each wheel's speed that stays the same for long, as that of a worn wheel. Default: as in the
-    simulation's preset `realistic`."""
-    wheel_noise_sqrt_s: _Deviation = 0.0112
+    realism: Realism = "realistic"
+    """Errors of the wheels on which the covariance counts: none, friendly, realistic or harsh."""
+    wheel_scale_sd: _Deviation | None = None
+    """Relative error of each wheel's speed that stays the same for long, as that of a worn wheel; null: by
+    `realism`."""
+    wheel_noise_sqrt_s: _Deviation | None = None
     """Relative error of the way that a wheel measures in one second; in a tick it is larger by the square root of the
-    ticks in a second. Default: as in the simulation's preset `realistic`."""
+    ticks in a second. Null: by `realism`."""
     wheel_resolution_m_s: _Deviation = 0.001
     """Error in m/s of a wheel that hardly turns: the step from one value of the encoder to the next; an estimate."""
 
@@ -72,10 +76,10 @@ class Base(Component):
         self._measured_us = 0
         self._wheels = WheelReader("wheel_state", "ignored", self.log.error)
         self._late = False
-        self._ramp = self._limited(STANDSTILL)
+        self._apply_settings(STANDSTILL)
 
     def config_changed(self) -> None:
-        self._ramp = self._limited(self._ramp.velocity)
+        self._apply_settings(self._ramp.velocity)
 
     def loop(self) -> None:
         # Measurements count whenever they come: one that arrives between the stages must not be missing in the sum.
@@ -92,18 +96,18 @@ class Base(Component):
         self.wheel_command.value.wheel_m_s = list(wheels_of(STANDSTILL, self.config.robot.wheel_distance_m))
         self.wheel_command.write()
 
-    def _limited(self, velocity: Velocity) -> Ramp:
-        """Returns the ramp within the present limits, from a velocity on."""
+    def _apply_settings(self, velocity: Velocity) -> None:
+        """Takes the errors, and the limits from a velocity on."""
         config = self.config
-        ramp = Ramp(
+        self._errors = chosen(EXPECTED[config.realism], config)
+        self._ramp = Ramp(
             config.speed_m_s,
             config.acceleration_m_s2,
             config.braking_m_s2,
             config.omega_rad_s,
             config.angular_acceleration_rad_s2,
         )
-        ramp.velocity = velocity
-        return ramp
+        self._ramp.velocity = velocity
 
     def _add(self, state: wheel_state_t) -> None:
         wheels_m_s = self._wheels.read(state.measured_m_s, state.header.writer)
@@ -122,8 +126,8 @@ class Base(Component):
 
     def _covariance(self, wheels_m_s: Wheels) -> list[list[float]]:
         """Returns the covariance (3, 3) of the velocity by the errors of its wheels, which each measured for a tick."""
-        config = self.config
-        relative = config.wheel_scale_sd**2 + config.wheel_noise_sqrt_s**2 / self.clock.period_s
+        config, errors = self.config, self._errors
+        relative = errors.wheel_scale_sd**2 + errors.wheel_noise_sqrt_s**2 / self.clock.period_s
         standing_m2_s2 = config.wheel_resolution_m_s**2
         first, second, third = wheels_m_s
         variances_m2_s2 = (

@@ -10,9 +10,11 @@ from procs.localization.global_search import global_search
 from procs.localization.line_map import line_map
 from procs.localization.self_localizer import LocalizerSettings, Motion, SelfLocalizer
 from procs.model.algebra import product
+from procs.model.expected_errors import EXPECTED
 from procs.model.field import Field
 from procs.model.frames import Floats, rotation, wrap
 from procs.model.geometry import plausible
+from procs.model.realism import Realism
 
 _FASTEST_M_S = 8.0  # no robot drives faster
 _STALE_S = 0.5  # points captured before are taken as they are
@@ -30,6 +32,8 @@ class LocalizationConfig(Config):
     """See start_x_m."""
     start_heading_rad: float | None = Setting(None, frozen=True)
     """See start_x_m."""
+    realism: Realism = "realistic"
+    """Errors of the camera on which the pose's covariance counts: none, friendly, realistic or harsh."""
     reach_m: float = Setting(default=7.0, gt=0.5, le=12.0)
     """White points further away are not used."""
     points: int = Setting(default=100, ge=10)
@@ -108,6 +112,7 @@ class Localization(Component):
             search_period_s=config.search_period_s,
             lost_score=config.lost_score,
             good_score=config.good_score,
+            errors=EXPECTED[config.realism],
         )
 
     def _compass_rad(self) -> float | None:

@@ -18,12 +18,11 @@ from procs.localization.hypotheses import Hypotheses
 from procs.localization.line_map import LineMap
 from procs.localization.line_matching import LinePoints, Matches, match
 from procs.localization.pose_filter import PoseFilter
+from procs.model.expected_errors import EXPECTED, ExpectedErrors
 from procs.model.frames import Floats, wrap
 
 _LOST_DEVIATIONS = (5.0, 5.0, 0.3)  # m, m, rad
 _FOUND_DEVIATIONS = (0.1, 0.1, 0.05)
-_FRAME_STANDING = np.array((0.006, 0.006, 0.002))  # m, m, rad: error that all points of a frame share: calibration, and
-_FRAME_PER_M_S = np.array((0.02, 0.02, 0.001))  # the mirror that shakes more the faster the robot drives
 _COMPASS_ERRORS_RAD = (0.0, -0.12, 0.12, -0.24, 0.24)  # tried one after the other while searching
 _COMPASS_MEMORY_S = 25.0  # time constant of the compass offset: so slow that a carried robot learns little wrong
 _COMPASS_FORGETS_S = 5.0  # time constant with which the offset fades while the robot searches
@@ -47,6 +46,8 @@ class LocalizerSettings:
     compass_limit_rad: float = 0.6
     correlation: float = 4.0
     """Points that share one error: factor of the match's covariance over that of independent points."""
+    errors: ExpectedErrors = EXPECTED["realistic"]
+    """Errors of the camera."""
 
 
 @dataclass(frozen=True)
@@ -88,8 +89,11 @@ class SelfLocalizer:
 
     @property
     def covariance(self) -> Floats:
-        """(3, 3) of x, y, heading."""
-        return self._filter.covariance
+        """(3, 3) of x, y, heading, with the errors that last."""
+        errors = self._settings.errors
+        if errors.lasting_m == errors.lasting_rad == 0.0:
+            return self._filter.covariance
+        return self._filter.covariance + _diagonal(errors.lasting_m, errors.lasting_rad)
 
     def change(self, lines: LineMap, settings: LocalizerSettings) -> None:
         """Takes new settings; keeps the pose and everything learnt."""
@@ -166,9 +170,12 @@ class SelfLocalizer:
             self._found(decided.pose, _FOUND_DEVIATIONS, decided.score)
 
     def _match_covariance(self, found: Matches, speed_m_s: float) -> Floats:
-        shared = np.square(_FRAME_STANDING + speed_m_s * _FRAME_PER_M_S)
+        errors = self._settings.errors
+        shared = _diagonal(
+            errors.frame_m + speed_m_s * errors.frame_s, errors.frame_rad + speed_m_s * errors.frame_rad_s_m
+        )
         weak = np.diag((1.0, 1.0, 1.0))  # so that a direction without lines has a finite, large variance
-        return np.asarray(self._settings.correlation * np.linalg.inv(found.information[0] + weak) + np.diag(shared))
+        return np.asarray(self._settings.correlation * np.linalg.inv(found.information[0] + weak) + shared)
 
     def _found(self, pose: Floats, deviations: tuple[float, float, float], score: float) -> None:
         self._filter = PoseFilter(pose, deviations)
@@ -187,3 +194,8 @@ class SelfLocalizer:
 def _share(duration_s: float, memory_s: float) -> float:
     """Returns the weight of a new value in a running mean with the time constant `memory_s`."""
     return -math.expm1(-duration_s / memory_s)
+
+
+def _diagonal(deviation_m: float, deviation_rad: float) -> Floats:
+    """Returns the covariance (3, 3) of a pose with independent errors."""
+    return np.diag(np.square((deviation_m, deviation_m, deviation_rad)))

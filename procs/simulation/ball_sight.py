@@ -15,7 +15,6 @@ from procs.vision.uncertainty import sphere_covariance
 
 LEAST_VISIBLE = 0.4
 """Least visible part of a ball that is found; ER-Force's threshold, too."""
-_CLAIMED_PX = 0.5  # deviation that the finder states, shaking included
 _LEAST_AREA = 1e-6
 
 
@@ -28,6 +27,8 @@ class BallSight:
     reach_m: float
     """Largest distance of a ball that is found."""
     errors: PerceptErrors
+    stated_px: float
+    """Standard deviation of a ball's place that the finder states, with the shaking of the mirror."""
 
     def found(
         self, at_m: Floats, height_m: float, visible: float, shake_px: tuple[float, float], noise: list[float]
@@ -65,7 +66,7 @@ class BallSight:
         if confidence >= LEAST_VISIBLE and math.hypot(x_m, y_m) <= self.reach_m:
             percept.visible, percept.confidence = True, confidence
             percept.x_m, percept.y_m = x_m, y_m
-            deviation_px = _CLAIMED_PX + 2.0 * max(0.0, 0.9 - confidence)
+            deviation_px = self.stated_px + 2.0 * max(0.0, 0.9 - confidence)
             percept.covariance_m2 = claimed(self.mirror, x_m, y_m, deviation_px, deviation_px)
         return percept
 
@@ -105,7 +106,9 @@ class BallSight:
             centre_m = self.mirror.height_m - further * below_m
             percept.z_m = max(0.0, centre_m - self.radius_m)
             place_m = (percept.x_m, percept.y_m, centre_m)
-            percept.covariance_m2 = sphere_covariance(self.mirror, place_m, AREA_PX / radius_px, _CLAIMED_PX).tolist()
+            percept.covariance_m2 = sphere_covariance(
+                self.mirror, place_m, AREA_PX / radius_px, self.stated_px
+            ).tolist()
         return percept
 
 

@@ -16,6 +16,7 @@ from lcmtypes.soccer import (
 )
 from procs.model.algebra import Floats, product
 from procs.model.ball import BALL, BallModel
+from procs.model.expected_errors import EXPECTED
 from procs.model.field import Field, Point
 from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
@@ -28,7 +29,6 @@ from procs.simulation.percept_errors import PRESETS
 from procs.simulation.sight import blurred, claimed, hidden, shaken
 from procs.vision.calibration import MirrorConfig
 
-_CLAIMED_ROBOT_PX = (0.6, 1.5)  # deviations that the detector states, shaking included
 _TILT_SHARE = 0.8  # of a tilt by an angle: shift of what is a few metres away, as a part of the mirror's scale
 
 
@@ -138,7 +138,10 @@ class Percepts(Component):
         self._errors = chosen(PRESETS[self.config.realism], self.config)
         self._mirror = self.config.mirror.mirror()
         self._tilt_px = _TILT_SHARE * self._mirror.scale_px * math.radians(self._errors.tilt_sd_deg) * self._tilts
-        self._ball_sight = BallSight(self._mirror, self.config.ball.radius_m, self.config.ball_reach_m, self._errors)
+        self._stated = EXPECTED[self.config.realism]
+        self._ball_sight = BallSight(
+            self._mirror, self.config.ball.radius_m, self.config.ball_reach_m, self._errors, self._stated.ball_px
+        )
         self._lines = line_scan(self.config.field)
 
     def _see_ball(
@@ -187,7 +190,7 @@ class Percepts(Component):
             obstacle = obstacle_t()
             obstacle.team = team
             obstacle.x_m, obstacle.y_m, obstacle.radius_m = x_m, y_m, config.robot.radius_m
-            obstacle.covariance_m2 = claimed(self._mirror, x_m, y_m, *_CLAIMED_ROBOT_PX)
+            obstacle.covariance_m2 = claimed(self._mirror, x_m, y_m, *self._stated.robot_px)
             percepts.obstacles.append(obstacle)
 
     def _see_lines(self, own: true_robot_t, robots_m: Floats, shake_px: tuple[float, float]) -> None:

@@ -5,6 +5,7 @@ from abc import ABC, abstractmethod
 from pydantic import Field
 
 from fwk import Component, Config, Image
+from procs.model.realism import Realism
 from procs.model.units import US_PER_S
 from procs.vision.calibration import MirrorConfig
 from procs.vision.colours import Picture
@@ -15,6 +16,8 @@ class DetectorConfig(Config):
 
     mirror: MirrorConfig = MirrorConfig()
     """Calibration of the camera."""
+    realism: Realism = "realistic"
+    """Errors of the camera on which covariances count: none, friendly, realistic or harsh."""
     latency_s: float = Field(default=0.0, ge=0.0, le=1.0)
     """From the exposure of a frame until its camera publishes it, for cameras that do not state the exposure."""
 

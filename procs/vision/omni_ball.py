@@ -5,6 +5,7 @@ from pydantic import Field as Setting
 from fwk import Writes
 from lcmtypes.soccer import ball_candidate_t, ball_percept_t
 from procs.model.ball import BALL, BallModel
+from procs.model.expected_errors import EXPECTED
 from procs.vision.ball_finder import BallFinder, BallSighting
 from procs.vision.colours import ColourRange, Hsv, Picture
 from procs.vision.detector import Detector, DetectorConfig
@@ -19,8 +20,8 @@ class OmniBallConfig(DetectorConfig):
     """Greatest hue, saturation and value of the ball's colour."""
     ball: BallModel = BALL
     """Size of the ball."""
-    deviation_px: float = Setting(default=0.5, gt=0.0)
-    """Standard deviation of the ball's centre in the picture, the shaking of the mirror included."""
+    deviation_px: float | None = Setting(default=None, gt=0.0)
+    """Standard deviation of the ball's centre in the picture, with the shaking of the mirror; null: by `realism`."""
     least_fit: float = Setting(default=0.4, gt=0.0, lt=1.0)
     """Least visible share of the ball's area; a ball more hidden than that is not seen."""
     farthest_m: float = Setting(default=8.0, gt=0.0)
@@ -37,8 +38,9 @@ class OmniBall(Detector):
         config = self.config
         colour = ColourRange(config.ball_low, config.ball_high)
         mirror = config.mirror.mirror()
+        deviation_px = config.deviation_px or EXPECTED[config.realism].ball_px
         self._finder = BallFinder(
-            mirror, colour, config.ball.radius_m, config.deviation_px, config.least_fit, config.farthest_m
+            mirror, colour, config.ball.radius_m, deviation_px, config.least_fit, config.farthest_m
         )
 
     def detect(self, pixels: Picture) -> None:

@@ -2,10 +2,12 @@
 
 import numpy as np
 from pydantic import Field as Setting
+from pydantic import PositiveFloat
 
 from fwk import Writes
 from lcmtypes.soccer import line_points_t, obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
+from procs.model.expected_errors import EXPECTED
 from procs.model.robot import ROBOT, RobotModel
 from procs.vision.colours import ColourRange, Hsv, Picture, to_hsv
 from procs.vision.detector import Detector, DetectorConfig
@@ -32,8 +34,8 @@ class OmniFieldConfig(DetectorConfig):
     """Line points sent at most, picked evenly from those found."""
     robot: RobotModel = ROBOT
     """Geometry of the other robots."""
-    deviation_px: tuple[float, float] = (0.6, 1.5)
-    """Standard deviation of a robot's middle in the picture, along and across the ray."""
+    deviation_px: tuple[PositiveFloat, PositiveFloat] | None = None
+    """Standard deviation of a robot's middle in the picture, along and across the ray; null: by `realism`."""
     green_low: Hsv = (38, 70, 40)
     """Least hue (0..179), saturation and value (0..255) of the carpet."""
     green_high: Hsv = (90, 255, 255)
@@ -86,9 +88,8 @@ class OmniField(Detector):
         self._lines = LineFinder(green, white)
         teams = ColourRange(config.cyan_low, config.cyan_high), ColourRange(config.magenta_low, config.magenta_high)
         self._markers = MarkerFinder(mirror, teams, config.robot.radius_m)
-        self._obstacles = ObstacleFinder(
-            mirror, self._star, black, (green, white), config.robot.radius_m, config.deviation_px
-        )
+        deviation_px = config.deviation_px or EXPECTED[config.realism].robot_px
+        self._obstacles = ObstacleFinder(mirror, self._star, black, (green, white), config.robot.radius_m, deviation_px)
 
     def _find(self, pixels: Picture) -> tuple[Floats, list[Obstacle]]:
         star, rings = to_hsv(self._star.look_up(pixels)), to_hsv(self._rings.look_up(pixels))

@@ -9,8 +9,10 @@ import pytest
 from fwk.testing import Bench
 from lcmtypes.core import log_t
 from lcmtypes.robot import motor_command_t, wheel_state_t
-from procs.drivers.base import Base, BaseConfig
+from procs.drivers.base import Base
+from procs.model.expected_errors import EXPECTED
 from procs.model.kinematics import STANDSTILL, Velocity, velocity_of, wheels_of
+from procs.model.realism import Realism
 from procs.simulation.physics.realism import noise_of
 from procs.simulation.physics.sensors import Encoders
 
@@ -192,9 +194,19 @@ def test_impossible_wheel_speeds_leave_the_covariance() -> None:
     assert base.port("odometry").sent[-1].velocity_covariance == before
 
 
-def test_wheel_errors_are_those_of_the_realistic_preset() -> None:
-    config, noise = BaseConfig(), noise_of("realistic", {})
-    assert (config.wheel_scale_sd, config.wheel_noise_sqrt_s) == (noise.wheel_scale_sd, noise.wheel_noise_sqrt_s)
+@pytest.mark.parametrize("realism", ["none", "friendly", "realistic", "harsh"])
+def test_expected_wheel_errors_are_those_of_the_simulation(realism: Realism) -> None:
+    expected, noise = EXPECTED[realism], noise_of(realism, {})
+    assert (expected.wheel_scale_sd, expected.wheel_noise_sqrt_s) == (noise.wheel_scale_sd, noise.wheel_noise_sqrt_s)
+
+
+def test_covariance_grows_with_the_realism_of_the_wheels() -> None:
+    variances = []
+    for settings in ({"realism": "friendly"}, {}, {"realism": "harsh"}, {"realism": "harsh", "wheel_scale_sd": 0.5}):
+        base = bench(**settings)
+        roll(base, Velocity(1.0, 0.0, 0.0), 1)
+        variances.append(base.port("odometry").sent[-1].velocity_covariance[0][0])
+    assert variances == sorted(set(variances))
 
 
 @pytest.mark.parametrize("name", ["wheel_scale_sd", "wheel_noise_sqrt_s", "wheel_resolution_m_s"])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from procs.model.algebra import Floats
+from procs.model.expected_errors import EXPECTED
 from procs.model.field import Field
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.sensor_noise import SensorNoise
@@ -18,7 +19,9 @@ from procs.vision.omni_ball import OmniBallConfig
 
 DEFAULTS = OmniBallConfig()
 MIRROR = DEFAULTS.mirror.mirror()
-FINDER = BallFinder(MIRROR, ColourRange(DEFAULTS.ball_low, DEFAULTS.ball_high), deviation_px=DEFAULTS.deviation_px)
+FINDER = BallFinder(
+    MIRROR, ColourRange(DEFAULTS.ball_low, DEFAULTS.ball_high), deviation_px=EXPECTED["realistic"].ball_px
+)
 SHAKE_PX = 0.5
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from procs.model.algebra import Floats
+from procs.model.expected_errors import EXPECTED
 from procs.model.field import Arc, Field, Segment
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.sensor_noise import SensorNoise
@@ -25,7 +26,7 @@ BLACKS = ColourRange(DEFAULTS.black_low, DEFAULTS.black_high)
 STAR = Scan.star(MIRROR, DEFAULTS.rays, 0.28, DEFAULTS.farthest_m)
 RINGS = Scan.rings(MIRROR, DEFAULTS.ring_distances_m)
 LINES = LineFinder(GREENS, WHITES)
-OBSTACLES = ObstacleFinder(MIRROR, STAR, BLACKS, (GREENS, WHITES), deviation_px=DEFAULTS.deviation_px)
+OBSTACLES = ObstacleFinder(MIRROR, STAR, BLACKS, (GREENS, WHITES), deviation_px=EXPECTED["realistic"].robot_px)
 FIELD = Field()
 
 

@@ -1,0 +1,70 @@
+"""Errors of a robot's own sensors that its drivers and detectors state, for each preset of realism.
+
+Covariances are honest only if they grow with the errors. A team measures its own robot and sets what it found; the
+values here are those of the simulated one.
+"""
+
+from pydantic import BaseModel, ConfigDict, NonNegativeFloat, PositiveFloat
+
+from procs.model.realism import Realism
+
+
+class ExpectedErrors(BaseModel):
+    """Standard deviations."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    ball_px: PositiveFloat = 0.5
+    """Of a ball's centre in the picture of a standing robot, with the shaking of its mirror."""
+    robot_px: tuple[PositiveFloat, PositiveFloat] = (0.6, 1.5)
+    """Of another robot's middle in the picture, along and across the ray, with the shaking of the mirror."""
+    frame_m: NonNegativeFloat = 0.006
+    """Of a position by the lines of one frame, as far as all of its points share it."""
+    frame_rad: NonNegativeFloat = 0.002
+    """The same of a heading."""
+    frame_s: NonNegativeFloat = 0.02
+    """Growth of `frame_m` with each m/s of the robot, whose mirror shakes the more."""
+    frame_rad_s_m: NonNegativeFloat = 0.001
+    """Growth of `frame_rad` with each m/s of the robot."""
+    lasting_m: NonNegativeFloat = 0.0
+    """Of a position in all frames alike, as by a mirror that is tilted: no number of frames makes it less."""
+    lasting_rad: NonNegativeFloat = 0.0
+    """The same of a heading."""
+    wheel_scale_sd: NonNegativeFloat = 0.03
+    """Relative error of each wheel's speed that stays the same for long, as that of a worn wheel."""
+    wheel_noise_sqrt_s: NonNegativeFloat = 0.0112
+    """Relative error of the way that a wheel measures in one second."""
+
+
+EXPECTED: dict[Realism, ExpectedErrors] = {
+    "none": ExpectedErrors(
+        ball_px=0.25,
+        robot_px=(0.3, 0.75),
+        frame_s=0.0,
+        frame_rad_s_m=0.0,
+        wheel_scale_sd=0.0,
+        wheel_noise_sqrt_s=0.0,
+    ),
+    "friendly": ExpectedErrors(
+        ball_px=0.25,
+        robot_px=(0.3, 0.75),
+        frame_s=0.01,
+        frame_rad_s_m=0.0005,
+        wheel_scale_sd=0.01,
+        wheel_noise_sqrt_s=0.0045,
+    ),
+    "realistic": ExpectedErrors(),
+    "harsh": ExpectedErrors(
+        ball_px=1.9,
+        robot_px=(1.7, 3.3),
+        frame_m=0.05,
+        frame_rad=0.01,
+        frame_s=0.04,
+        frame_rad_s_m=0.002,
+        lasting_m=0.05,
+        lasting_rad=0.008,
+        wheel_scale_sd=0.06,
+        wheel_noise_sqrt_s=0.0224,
+    ),
+}
+"""`harsh` has a mirror that is tilted by 0.3 degrees: 0.8 px in one direction of the robot, in all frames."""
