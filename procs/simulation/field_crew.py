@@ -51,6 +51,8 @@ class FieldCrew:
             ball.done()
         for wish in freeze:
             self.frozen = bool(wish.value.frozen)
+            if self.frozen:
+                self._world.drop_kicks()
             wish.done()
 
     def _mistake_in_robot(self, wanted: place_robot_t) -> str:

@@ -27,6 +27,7 @@ from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.units import US_PER_S
 from procs.model.wheel_messages import WheelReader
 from procs.simulation.field_crew import FieldCrew
+from procs.simulation.physics.events import Event
 from procs.simulation.physics.kick_mechanism import KickerCommand
 from procs.simulation.physics.realism import Changes, noise_of
 from procs.simulation.physics.reports import event_message, field_message, robot_message
@@ -144,8 +145,10 @@ class Simulator(Component):
         self.time_source.next_us = now_us + self._period_us
         self._place_ball()
         self._crew.carry_out(self.place_robot, self.place_ball, self.freeze, self.reset)
-        self._command_robots()
-        events = [] if self._crew.frozen else self._world.advance(passed_us)
+        events: list[Event] = []
+        if not self._crew.frozen:
+            self._command_robots()
+            events = self._world.advance(passed_us)
         self._sense(passed_us / US_PER_S)
         self._check_batteries()
         self._report_truth()
@@ -153,7 +156,7 @@ class Simulator(Component):
         report.ball_in_field = self._world.ball_in_field
         report.ball_x_m, report.ball_y_m = self._world.ball.body.position
         report.ball_speed_m_s = 0.0 if self._crew.frozen else self._world.ball.speed_m_s
-        report.last_touch = self._world.last_touch
+        report.last_touch, report.frozen = self._world.last_touch, self._crew.frozen
         report.events = [event_message(event, self.config.players) for event in events]
         self.match_events.write()
         if self.clock.tick % _FIELD_TICKS == 1:

@@ -111,6 +111,11 @@ class World:
         self.ball.body.velocity = velocity_m_s[:2]
         self.ball.vz_m_s = velocity_m_s[2]
 
+    def drop_kicks(self) -> None:
+        """Drops the commands that the kickers have received but not yet followed."""
+        for kicker in self.kickers.values():
+            kicker.drop_commands()
+
     def advance(self, duration_us: int) -> list[Event]:
         """Moves the world on; returns the events, sorted by kind and robot."""
         steps = max(1, math.ceil(duration_us / (self._physics.step_s * 1e6)))
