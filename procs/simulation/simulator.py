@@ -175,7 +175,10 @@ class Simulator(Component):
                 continue
             self._placement_id = placement.placement_id
             if math.isfinite(placement.x_m) and math.isfinite(placement.y_m):
-                self._world.place_ball(placement.x_m, placement.y_m)
+                if not self._world.place_ball(placement.x_m, placement.y_m):
+                    self.log.warning(
+                        f"ball placement {placement.placement_id}: there is no room left for the ball between the walls"
+                    )
             else:
                 self.log.warning(
                     f"ball placement {placement.placement_id} asks for ({placement.x_m}, {placement.y_m}); ignored"

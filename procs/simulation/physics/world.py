@@ -21,8 +21,9 @@ from procs.simulation.physics.kick_mechanism import Kicker, Push
 from procs.simulation.physics.mouth import Mouth
 from procs.simulation.physics.realism import Noise
 from procs.simulation.physics.robot_body import Robot
+from procs.simulation.physics.room import Room
 from procs.simulation.physics.settings import PhysicsSettings
-from procs.simulation.physics.start_places import Pose, free_place, starting_pose
+from procs.simulation.physics.start_places import Pose, starting_pose
 
 _FREE_M = 0.02  # between robot and ball when the field crew puts it down
 
@@ -55,6 +56,7 @@ class World:
         build_arena(self._space, self._field, self._physics.contacts)
         friction_scale = 1.0 + noise.friction_spread * rng.uniform(-1.0, 1.0)
         self.ball = Ball(self._space, ball, friction_scale, robot.height_m, self._field.goal_height_m)
+        self._room = Room(self._field)
         self._clearance_m = robot.radius_m + ball.radius_m + _FREE_M
         self._bar = Crossbar(self._field, self.ball, self._physics.contacts.post_bounce)
         self.robots: dict[str, Robot] = {}
@@ -84,32 +86,37 @@ class World:
     def return_to_starts(self) -> None:
         """Sets all robots down at the places where they began, with full batteries."""
         for name, pose in self._starts.items():
-            self.place_robot(name, pose)
+            self.robots[name].put(*pose)
             self.batteries[name].refill()
+        self._clear_ball(self._middles(), self._middles())
 
-    def place_robot(self, name: str, pose: Pose) -> None:
-        """Sets a robot down at rest; a ball that lies in its way is put beside it."""
-        self.robots[name].put(*pose)
-        at, ball = Point(pose.x_m, pose.y_m), self.ball
-        if not ball.flies and math.dist(at, ball.body.position) < self._robot.mouth_m:
-            ball.put(*free_place(Point(*ball.body.position), [at], self._clearance_m))
+    def place_robot(self, name: str, pose: Pose) -> bool:
+        """Sets a robot down at rest, at the nearest place that is free; a ball that lies in its way is put beside it.
 
-    def place_ball(self, x_m: float, y_m: float) -> None:
-        """Puts the ball down at rest: inside the border, beside a robot that stands in the way."""
-        x_limit_m = self._field.half_length_m + self._field.border_m - self.ball.radius_m
-        y_limit_m = self._field.half_width_m + self._field.border_m - self.ball.radius_m
-        x_m, y_m = min(x_limit_m, max(-x_limit_m, x_m)), min(y_limit_m, max(-y_limit_m, y_m))
-        middles = [Point(*robot.body.position) for robot in self.robots.values()]
-        place = free_place(Point(x_m, y_m), middles, self._clearance_m)
-        self.ball.put(*place)
+        Returns False, and does nothing, if there is no room for it.
+        """
+        others = [Point(*robot.body.position) for robot in self.robots.values() if robot.name != name]
+        radius_m = self._robot.radius_m
+        place = self._room.nearest(Point(pose.x_m, pose.y_m), radius_m, others, 2 * radius_m)
+        if place is None or not self._clear_ball([place], [*others, place]):
+            return False
+        self.robots[name].put(*place, pose.heading_rad)
+        return True
+
+    def place_ball(self, x_m: float, y_m: float) -> bool:
+        """Puts the ball down at rest, at the nearest place that is free.
+
+        Returns False, and does nothing, if there is no room for it.
+        """
+        if not self._put_ball(Point(x_m, y_m), self._middles()):
+            return False
         self.last_touch = ""
-        self._judge.ball_in_field = self._field.in_field(*place, self.ball.radius_m)
+        self._judge.ball_in_field = self._field.in_field(*self.ball.body.position, self.ball.radius_m)
+        return True
 
     def throw_ball(self, height_m: float, velocity_m_s: tuple[float, float, float]) -> None:
         """Lifts the ball to a height and gives it a velocity, world frame."""
-        self.ball.z_m = max(0.0, height_m)
-        self.ball.body.velocity = velocity_m_s[:2]
-        self.ball.vz_m_s = velocity_m_s[2]
+        self.ball.throw(height_m, *velocity_m_s)
 
     def drop_kicks(self) -> None:
         """Drops the commands that the kickers have received but not yet followed."""
@@ -129,6 +136,23 @@ class World:
         self.time_us = start_us + duration_us
         self._drain_batteries(duration_us / 1e6)
         return sorted([*events, *touched.values(), *self._contacts.take_collisions()])
+
+    def _middles(self) -> list[Point]:
+        """Returns the middles of all robots."""
+        return [Point(*robot.body.position) for robot in self.robots.values()]
+
+    def _clear_ball(self, places: Sequence[Point], robots: Sequence[Point]) -> bool:
+        """Puts a ball that lies where robots are set down beside all `robots`; returns False if there is no room."""
+        ball = self.ball
+        if ball.flies or all(math.dist(place, ball.body.position) >= self._robot.mouth_m for place in places):
+            return True
+        return self._put_ball(Point(*ball.body.position), robots)
+
+    def _put_ball(self, wanted: Point, robots: Sequence[Point]) -> bool:
+        place = self._room.nearest(wanted, self.ball.radius_m, robots, self._clearance_m)
+        if place is not None:
+            self.ball.put(*place)
+        return place is not None
 
     def _drain_batteries(self, duration_s: float) -> None:
         for name, robot, kicker in self._in_order:
