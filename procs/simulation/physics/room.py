@@ -1,7 +1,7 @@
 """Room on the ground for the ball and robots: places between the walls that are clear of goals and of robots."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 
 from procs.model.field import SIDES, Field, Point, Segment
@@ -22,6 +22,21 @@ class Room:
         self._post_m = field.post_diameter_m / 2
         self._posts = [post for side in SIDES for post in field.goal_posts(side)]
         self._nets = [net for side in SIDES for net in nets(field, side)]
+
+    def mistake_in(self, starts: Mapping[str, Point], radius_m: float) -> str:
+        """Returns why robots of that radius cannot begin at their places; empty if they can."""
+        x_m, y_m = self._x_m - radius_m, self._y_m - radius_m
+        for number, (name, place) in enumerate(starts.items()):
+            where = f"{name} at ({place.x_m:g}, {place.y_m:g})"
+            if abs(place.x_m) > x_m + _SLACK_M or abs(place.y_m) > y_m + _SLACK_M:
+                return f"{where} is not inside the walls; x should be at most {x_m:g} m, y {y_m:g} m, to either side"
+            if not self.is_free(place, radius_m, (), 0.0):
+                return f"{where} is in a post or a net of a goal; it should be {radius_m:g} m away from them"
+            for other, there in list(starts.items())[:number]:
+                if math.dist(place, there) < 2 * radius_m - _SLACK_M:
+                    away_m = math.dist(place, there)
+                    return f"{where} is {away_m:.2g} m away from {other}; it should be at least {2 * radius_m:g} m away"
+        return ""
 
     def is_free(self, place: Point, radius_m: float, robots: Sequence[Point], clearance_m: float) -> bool:
         """Returns whether a body fits.

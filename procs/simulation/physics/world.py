@@ -43,7 +43,22 @@ class World:
         starts: Mapping[str, Pose] | None = None,
         players: Mapping[str, Player] = PLAYERS,
     ) -> None:
-        """`robots` are namespaces; those without a start in `starts` begin at the places of their `players`."""
+        """Sets the world up.
+
+        Args:
+            robots: their namespaces.
+            rng: source of all random numbers.
+            field: measures of the field.
+            robot: geometry of all robots.
+            ball: size and friction of the ball.
+            physics: motors, mouths, kickers, contacts.
+            noise: errors and delays.
+            starts: poses at the beginning; robots without one begin at the places of their `players`.
+            players: team and number by namespace.
+
+        Raises:
+            ValueError: there is no room for all robots.
+        """
         self.time_us = 0
         self.last_touch = ""
         """Robot that touched the ball last since it was placed."""
@@ -62,11 +77,10 @@ class World:
         self.robots: dict[str, Robot] = {}
         self.kickers: dict[str, Kicker] = {}
         self.batteries: dict[str, Battery] = {}
-        self._starts: dict[str, Pose] = {}
+        self._starts = self._start_poses(sorted(robots), starts or {}, players)
         for name in sorted(robots):
             drive = Drive(robot, self._physics.drive, noise.drive_delay_s)
             body = self.robots[name] = Robot(self._space, name, robot, drive, self._physics.contacts)
-            self._starts[name] = (starts or {}).get(name) or starting_pose(players.get(name), self._field)
             body.put(*self._starts[name])
             mouth = Mouth(body, self.ball, self._physics.handling, 1.0 - noise.handling_loss)
             self.kickers[name] = Kicker(mouth, self._physics.kicker, noise, rng)
@@ -82,6 +96,20 @@ class World:
     def ball_in_field(self) -> bool:
         """True if the ball is on the field, lines included."""
         return self._judge.ball_in_field
+
+    def _start_poses(
+        self, robots: Sequence[str], starts: Mapping[str, Pose], players: Mapping[str, Player]
+    ) -> dict[str, Pose]:
+        """Returns the poses at the beginning; robots that share a usual place stand beside each other."""
+        found, radius_m = {name: starts[name] for name in robots if name in starts}, self._robot.radius_m
+        for name in (name for name in robots if name not in starts):
+            x_m, y_m, heading_rad = starting_pose(players.get(name), self._field)
+            taken = [Point(pose.x_m, pose.y_m) for pose in found.values()]
+            place = self._room.nearest(Point(x_m, y_m), radius_m, taken, 2 * radius_m)
+            if place is None:
+                raise ValueError(f"there is no room for {name} between the walls")
+            found[name] = Pose(*place, heading_rad)
+        return found
 
     def return_to_starts(self) -> None:
         """Sets all robots down at the places where they began, with full batteries."""
