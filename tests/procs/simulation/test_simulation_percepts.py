@@ -257,7 +257,7 @@ def test_teams_are_recognized_but_for_a_share(share: float) -> None:
     assert teams.count(2) / len(teams) == pytest.approx(1.0 - share, abs=0.06)
 
 
-def percepts_of(errors: dict[str, float]) -> list[str]:
+def percepts_of(errors: dict[str, Any]) -> list[str]:
     """Returns what a robot that drives sees of a ball that rises and is hidden at last."""
     eyes = Bench(Percepts, name="cyan1/percepts", realism="none", **errors)
     for step in range(20):
