@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from pydantic import Field as Setting
+from pydantic import PositiveFloat
 
 from fwk import Clock, Component, Config, Logger, Reads, Writes, channel
 from lcmtypes.soccer import (
@@ -85,7 +86,7 @@ class PerceptsConfig(Config):
     """Size of the ball."""
     rays: int = Setting(default=180, ge=16, le=720)
     """Scan lines around the robot, as the detector of lines has them."""
-    ring_distances_m: tuple[float, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
+    ring_distances_m: tuple[PositiveFloat, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
     """Radii of the rings, as the detector of lines has them."""
     reach_m: float = Setting(default=7.0, gt=0.5)
     """Largest distance of robots and line points."""

@@ -75,8 +75,8 @@ class SimulatorConfig(Config):
         """Refuses starts where no robot has room; field and robot have been checked before."""
         if {"field", "robot"} <= info.data.keys():
             places = {robot: Point(x_m, y_m) for robot, (x_m, y_m, _) in starts.items()}
-            if mistake := Room(info.data["field"]).mistake_in(places, info.data["robot"].radius_m):
-                raise ValueError(mistake)
+            if mistakes := list(Room(info.data["field"]).mistakes_in(places, info.data["robot"].radius_m)):
+                raise ValueError("; ".join(mistakes))
         return starts
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain
+from itertools import chain, combinations
 
 from procs.model.field import SIDES, Field, Point, Segment
 from procs.model.geometry import ahead, clamp
@@ -23,20 +23,19 @@ class Room:
         self._posts = [post for side in SIDES for post in field.goal_posts(side)]
         self._nets = [net for side in SIDES for net in nets(field, side)]
 
-    def mistake_in(self, starts: Mapping[str, Point], radius_m: float) -> str:
-        """Returns why robots of that radius cannot begin at their places; empty if they can."""
+    def mistakes_in(self, starts: Mapping[str, Point], radius_m: float) -> Iterator[str]:
+        """Yields why robots of that radius cannot begin at their places: walls, goals or each other are in the way."""
         x_m, y_m = self._x_m - radius_m, self._y_m - radius_m
-        for number, (name, place) in enumerate(starts.items()):
+        for name, place in starts.items():
             where = f"{name} at ({place.x_m:g}, {place.y_m:g})"
             if abs(place.x_m) > x_m + _SLACK_M or abs(place.y_m) > y_m + _SLACK_M:
-                return f"{where} is not inside the walls; x should be at most {x_m:g} m, y {y_m:g} m, to either side"
-            if not self.is_free(place, radius_m, (), 0.0):
-                return f"{where} is in a post or a net of a goal; it should be {radius_m:g} m away from them"
-            for other, there in list(starts.items())[:number]:
-                if math.dist(place, there) < 2 * radius_m - _SLACK_M:
-                    away_m = math.dist(place, there)
-                    return f"{where} is {away_m:.2g} m away from {other}; it should be at least {2 * radius_m:g} m away"
-        return ""
+                yield f"{where} is outside the walls; x is at most {x_m:g} m, y {y_m:g} m"
+            elif not self.is_free(place, radius_m, (), 0.0):
+                yield f"{where} is in a post or a net of a goal; a robot needs {radius_m:g} m"
+        for (one, at), (other, there) in combinations(starts.items(), 2):
+            distance_m = math.dist(at, there)
+            if distance_m < 2 * radius_m - _SLACK_M:
+                yield f"{one} and {other} are {distance_m:g} m apart; robots need {2 * radius_m:g} m"
 
     def is_free(self, place: Point, radius_m: float, robots: Sequence[Point], clearance_m: float) -> bool:
         """Returns whether a body fits.

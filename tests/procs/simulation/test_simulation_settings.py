@@ -57,17 +57,18 @@ robots:
             "'physics.contacts.hull_friction' is inf; it should be a finite number",
         ),
         ("*/percepts.line_missed=1.5", "'line_missed' is 1.5; it should be less than or equal to 1"),
+        ("*/percepts.ring_distances_m=[0.7,-1]", "'ring_distances_m.1' is -1; it should be greater than 0"),
         (
             "world/simulator.starts.cyan1=[100,0,0]",
-            "cyan1 at (100, 0) is not inside the walls; x should be at most 11.75 m, y 7.75 m, to either side",
+            "cyan1 at (100, 0) is outside the walls; x is at most 11.75 m, y 7.75 m",
         ),
         (
             "world/simulator.starts.cyan1=[-11.0,1.26,0]",
-            "cyan1 at (-11, 1.26) is in a post or a net of a goal; it should be 0.25 m away from them",
+            "cyan1 at (-11, 1.26) is in a post or a net of a goal; a robot needs 0.25 m",
         ),
         (
             "world/simulator.starts={cyan1: [1,1,0], cyan2: [1.1,1,0]}",
-            "cyan2 at (1.1, 1) is 0.1 m away from cyan1; it should be at least 0.5 m away",
+            "cyan1 and cyan2 are 0.1 m apart; robots need 0.5 m",
         ),
     ],
 )
@@ -75,6 +76,11 @@ def test_nonsense_is_refused_by_name_and_limit(setting: str, mistake: str) -> No
     with pytest.raises(PlanError) as raised:
         launch_plan("soccer-percepts.yaml", (setting,))
     assert mistake in str(raised.value)
+
+
+def test_robots_that_know_the_truth_have_no_negative_noise() -> None:
+    with pytest.raises(PlanError, match="'ball_sd_m' is -1; it should be greater than or equal to 0"):
+        launch_plan("soccer-truth.yaml", ("*/world_model.ball_sd_m=-1",))
 
 
 @pytest.mark.parametrize(
