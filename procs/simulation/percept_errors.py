@@ -19,7 +19,7 @@ class PerceptErrors(BaseModel):
     shake_px: float = 0.0
     """Standard deviation by which the standing robot's mirror shakes everything that a frame shows, in pixels."""
     shake_px_per_m_s: float = 0.0
-    """Growth of that deviation with each m/s of the robot, in pixels. As of the camera."""
+    """Growth of that deviation with each m/s of the robot, in pixels. The same as that of the camera."""
     ball_px: float = 0.0
     """Standard deviation of the ball's place, in pixels. Fitted to rendered pictures."""
     ball_area_px: float = 0.0
