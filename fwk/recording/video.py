@@ -1,6 +1,7 @@
 """Makes a video of a recording: one picture for each tick, drawn from the newest messages at its end."""
 
 import contextlib
+import fnmatch
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
@@ -10,10 +11,12 @@ from fwk.clock import US_PER_S
 from fwk.lcm.messages import Header
 from fwk.lcm.stamped_log import StampedLog
 from fwk.lcm.type_registry import decoded, header_of
+from fwk.recording.versions import PLAN, read_plan
 from fwk.recording.video_encoder import Encoder, EncoderError, Picture, open_encoder
 
 Newest = Callable[[str], Any]
-"""Channel to its newest message, decoded, or None before the first."""
+"""Channel to its newest message, decoded, or None before the first. Drawings of recordings also get `settings`, which
+returns settings of the run as `fwk.web.Newest.settings` does."""
 Draw = Callable[[Newest], Picture | None]
 """Returns a picture, or None while there is nothing to show."""
 Progress = Callable[[int, float], None]
@@ -87,15 +90,31 @@ def render_video(log: Path, out: Path, draw: Draw, progress: Progress = lambda *
 
 
 class _Newest:
-    """Newest message of each channel, decoded on demand."""
+    """Newest message of each channel, decoded on demand, and the settings of the recorded run."""
 
     def __init__(self) -> None:
+        self._configs: dict[str, dict[str, Any]] = {}
         self._raw: dict[str, bytes] = {}
         self._decoded: dict[str, Any] = {}
 
     def take(self, channel: str, data: bytes) -> None:
         self._raw[channel] = data
         self._decoded.pop(channel, None)
+
+    def take_plan(self, data: bytes) -> None:
+        self._configs = {}
+        with contextlib.suppress(Exception):  # unreadable: as if there were no plan
+            self._configs = {each.name: each.config for each in read_plan(data)[0].components}
+
+    def settings(self, components: str, name: str) -> dict[str, Any]:
+        """Returns the settings below `name` of the first component that has them, when the run started; empty: none.
+
+        Args:
+            components: pattern of the names of the components.
+            name: name of the group of settings, such as `mirror`.
+        """
+        found = (self._configs[each].get(name) for each in sorted(fnmatch.filter(self._configs, components)))
+        return next((group for group in found if isinstance(group, dict)), {})
 
     def __call__(self, channel: str) -> Any:
         if channel not in self._decoded and channel in self._raw:
@@ -111,6 +130,8 @@ def _ends_of_ticks(reader: StampedLog, newest: _Newest) -> Iterator[Header]:
     """Yields a header of each tick when all messages of the tick are in `newest`."""
     last: Header | None = None
     for event in reader:
+        if event.channel == PLAN:
+            newest.take_plan(event.data)
         head = header_of(event.data)
         if head is None:
             continue

@@ -6,9 +6,9 @@ from pydantic import BaseModel, ConfigDict, Field, PositiveFloat
 class BallModel(BaseModel):
     """Size, mass and friction; simulator, vision, world model and behaviour use the same."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    radius_m: PositiveFloat = 0.11
+    radius_m: float = Field(default=0.11, gt=0.0, le=0.3)
     """Radius in metres. Rule book of 2016: a circumference of 0.68 to 0.70 m."""
     mass_kg: PositiveFloat = 0.43
     """Mass in kilograms. Rule book of 2016: 0.41 to 0.45 kg."""

@@ -6,11 +6,30 @@ field and areas are measured to the outer edges of their lines.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, ValidationInfo, field_validator
+from pydantic import Field as Setting
 
 SIDES = (-1.0, 1.0)
+
+Measure = Annotated[float, Setting(gt=0.0, le=100.0)]
+"""A measure of the field in metres."""
+
+_LIMITS = {
+    "penalty_area_width_m": ("width_m", 1.0),
+    "penalty_area_depth_m": ("length_m", 0.5),
+    "goal_area_width_m": ("penalty_area_width_m", 1.0),
+    "goal_area_depth_m": ("penalty_area_depth_m", 1.0),
+    "corner_radius_m": ("width_m", 0.5),
+    "circle_diameter_m": ("width_m", 1.0),
+    "penalty_mark_distance_m": ("length_m", 0.5),
+    "line_width_m": ("goal_area_depth_m", 0.5),
+    "restart_offset_m": ("width_m", 0.5),
+    "goal_width_m": ("width_m", 1.0),
+    "goal_depth_m": ("border_m", 1.0),
+}
+"""Measure to the larger one, stated before it, of which it is a share at most."""
 
 
 class Point(NamedTuple):
@@ -39,50 +58,62 @@ class Arc(NamedTuple):
 class Field(BaseModel):
     """Measures of the field, and the geometry that follows from them; all in metres."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
 
-    length_m: float = 22.0
+    length_m: Measure = 22.0
     """Length A of the field along x, over the outer edges of the goal lines, in metres."""
-    width_m: float = 14.0
+    width_m: Measure = 14.0
     """Width B of the field along y, over the outer edges of the touch lines, in metres."""
-    penalty_area_width_m: float = 6.9
+    penalty_area_width_m: Measure = 6.9
     """Width C of the penalty areas along y, in metres."""
-    penalty_area_depth_m: float = 2.25
+    penalty_area_depth_m: Measure = 2.25
     """Depth E of the penalty areas from the goal line into the field, in metres."""
-    goal_area_width_m: float = 3.9
+    goal_area_width_m: Measure = 3.9
     """Width D of the goal areas along y, in metres."""
-    goal_area_depth_m: float = 0.75
+    goal_area_depth_m: Measure = 0.75
     """Depth F of the goal areas from the goal line into the field, in metres."""
-    corner_radius_m: float = 0.75
+    corner_radius_m: Measure = 0.75
     """Radius G of the quarter circles in the corners, in metres."""
-    circle_diameter_m: float = 4.0
+    circle_diameter_m: Measure = 4.0
     """Diameter H of the centre circle, in metres."""
-    penalty_mark_distance_m: float = 3.6
+    penalty_mark_distance_m: Measure = 3.6
     """Distance I from the goal line to the penalty mark, in metres."""
-    mark_diameter_m: float = 0.15
+    mark_diameter_m: Measure = 0.15
     """Diameter J of the centre mark, the penalty marks and the restart marks, in metres."""
-    line_width_m: float = 0.125
+    line_width_m: Measure = 0.125
     """Width K of every line, in metres."""
-    border_m: float = 1.0
+    border_m: Measure = 1.0
     """Distance L from the field to the low wall around it, in metres."""
-    team_area_width_m: float = 1.0
+    team_area_width_m: float = Setting(1.0, ge=0.0, le=100.0)
     """Width M of the technical team areas beside the border, in metres."""
-    team_area_length_m: float = 7.5
+    team_area_length_m: float = Setting(7.5, ge=0.0, le=100.0)
     """Length N of the technical team areas, in metres."""
-    ramp_length_m: float = 1.0
+    ramp_length_m: float = Setting(1.0, ge=0.0, le=100.0)
     """Length O of the ramps into the team areas, in metres."""
-    ramp_width_m: float = 0.5
+    ramp_width_m: float = Setting(0.5, ge=0.0, le=100.0)
     """Width P of the ramps into the team areas, in metres."""
-    restart_offset_m: float = 3.5
+    restart_offset_m: Measure = 3.5
     """Distance Q from the middle of the field to the restart marks beside it, in metres."""
-    goal_width_m: float = 2.4
+    goal_width_m: Measure = 2.4
     """Clear width of the goals between the posts, in metres."""
-    goal_depth_m: float = 0.6
+    goal_depth_m: Measure = 0.6
     """Depth of the goals from the outer edge of the goal line to the net, in metres."""
-    goal_height_m: float = 1.0
+    goal_height_m: Measure = 1.0
     """Clear height of the goals under the bar, in metres."""
-    post_diameter_m: float = 0.125
+    post_diameter_m: Measure = 0.125
     """Diameter of the round goal posts, in metres."""
+
+    @field_validator(*_LIMITS)
+    @classmethod
+    def _fits(cls, measure_m: float, info: ValidationInfo) -> float:
+        """Refuses measures that do not fit into others, which are checked before them."""
+        assert info.field_name
+        larger, share = _LIMITS[info.field_name]
+        if larger in info.data and measure_m > share * info.data[larger]:
+            part = larger if share == 1.0 else f"half of {larger}"
+            largest_m = share * info.data[larger]
+            raise ValueError(f"{info.field_name} of {measure_m:g} m should be at most {part}, which is {largest_m:g} m")
+        return measure_m
 
     @property
     def half_length_m(self) -> float:
@@ -167,5 +198,5 @@ class Field(BaseModel):
 
 
 def field_of(measures: Any) -> Field:
-    """Returns the field of a message that has the measures as members."""
-    return Field(**{name: getattr(measures, name) for name in Field.model_fields})
+    """Returns the field of a message that has the measures as members, without a check."""
+    return Field.model_construct(**{name: getattr(measures, name) for name in Field.model_fields})

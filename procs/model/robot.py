@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Literal, Protocol
 
-from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt
+from pydantic import BaseModel, ConfigDict, Field, PositiveFloat, PositiveInt
 
 from procs.model.ball import BallModel
 
@@ -21,21 +21,21 @@ _NAME = re.compile(r"(.*?)(\d*)")
 class RobotModel(BaseModel):
     """A round robot on three omnidirectional wheels with a flat mouth in front; all robots of a match are equal."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    radius_m: PositiveFloat = 0.25
+    radius_m: float = Field(default=0.25, gt=0.0, le=0.5)
     """Radius of the round body, in metres. Rule book of 2016: a footprint of 0.30 to 0.52 m."""
-    height_m: PositiveFloat = 0.6
+    height_m: float = Field(default=0.6, gt=0.0, le=2.0)
     """Height of the body, in metres; the team markers are below. Rule book of 2016: 0.40 to 0.80 m."""
     mass_kg: PositiveFloat = 35.0
     """Mass of the whole robot, in kilograms. The robots of simatch have 31 to 39 kg."""
-    wheel_distance_m: PositiveFloat = 0.2
+    wheel_distance_m: float = Field(default=0.2, gt=0.0, le=0.5)
     """Distance from the robot's middle to each wheel, in metres."""
     wheel_limit_m_s: PositiveFloat = 3.5
     """Highest rim speed of the wheels, in m/s."""
-    kick_limit_m_s: PositiveFloat = 12.0
+    kick_limit_m_s: float = Field(default=12.0, gt=1.0, le=20.0)
     """Highest speed of a kicked ball, in m/s, whatever its elevation. MRA takes up to 12 m/s for plausible."""
-    mouth_half_angle_deg: PositiveFloat = 30.0
+    mouth_half_angle_deg: float = Field(default=30.0, gt=0.0, lt=90.0)
     """The front is cut off between these angles to the left and the right of forward."""
 
     @property
@@ -88,6 +88,17 @@ def number_of(robot: str) -> int:
     """Returns the number at the end of the name; 0 for a name without a number."""
     found = _NAME.fullmatch(robot)
     return int(found[2]) if found and found[2] else 0
+
+
+def player_of(robot: str, players: Mapping[str, Player]) -> Player | None:
+    """Returns team and number of a robot: those stated in `players`, otherwise those of its name, such as `cyan6`.
+
+    A robot that is not among them and whose name is not a team and a number is not a player.
+    """
+    team, number = team_of(robot), number_of(robot)
+    if robot in players or number < 1 or (team != CYAN and team != MAGENTA):
+        return players.get(robot)
+    return Player(team=team, number=number)
 
 
 class Named(Protocol):

@@ -33,6 +33,8 @@ class RefereeConfig(Config, Rules):
 class Referee(Component):
     """Decides from the reports of the linesmen and the true positions of the robots; obeys manual commands.
 
+    While the world is frozen, time stands still for the referee, too: it only obeys commands.
+
     `fwk call world/referee_command name=freekick team=cyan`
     """
 
@@ -63,9 +65,10 @@ class Referee(Component):
         passed_s = self.clock.period_s if self._before_us < 0 else self.clock.since_s(self._before_us)
         self._before_us = self.clock.now_us
         sight = self._sight()
-        whistle.step(passed_s, sight)
-        for call in whistle.calls:
-            self._record(call)
+        if sight.events or not self.match_events.value.frozen:
+            whistle.step(passed_s, sight)
+            for call in whistle.calls:
+                self._record(call)
         self._obey(sight)
         self._write_state()
         self._write_history()

@@ -1,14 +1,14 @@
 """Mistakes in scenario files, in words that say where they are and what would be right."""
 
-import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
-from itertools import combinations
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from procs.model.field import Point
+from procs.simulation.physics.room import Room
 from procs.simulation.simulator import SimulatorConfig
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
@@ -54,19 +54,10 @@ def robot_mistakes(robots: Sequence[str], dummies: Sequence[str], places: Mappin
             yield f"places: no robot '{name}'; there are {', '.join(sorted(everyone)) or 'none'}"
 
 
-def place_mistakes(config: SimulatorConfig) -> Iterator[str]:
-    """Yields which robots would stand outside the walls, or in each other."""
-    field, radius_m = config.field, config.robot.radius_m
-    x_limit_m = field.half_length_m + field.border_m - radius_m
-    y_limit_m = field.half_width_m + field.border_m - radius_m
-    for name, (x_m, y_m, _) in config.starts.items():
-        if abs(x_m) > x_limit_m or abs(y_m) > y_limit_m:
-            limits = f"x is at most {x_limit_m:g} m, y {y_limit_m:g} m"
-            yield f"places: {name} at ({x_m:g}, {y_m:g}) is outside the walls; {limits}"
-    for (one, at), (other, there) in combinations(config.starts.items(), 2):
-        distance_m = math.dist(at[:2], there[:2])
-        if distance_m < 2 * radius_m - 1e-9:
-            yield f"places: {one} and {other} are {distance_m:g} m apart; robots need {2 * radius_m:g} m"
+def place_mistakes(places: Mapping[str, Sequence[float]], config: SimulatorConfig) -> Iterator[str]:
+    """Yields which robots would stand outside the walls, in a goal, or in each other."""
+    starts = {name: Point(x_m, y_m) for name, (x_m, y_m, _) in places.items()}
+    yield from (f"places: {each}" for each in Room(config.field).mistakes_in(starts, config.robot.radius_m))
 
 
 def settings_mistakes(

@@ -1,6 +1,7 @@
 """A world model that knows the truth, with noise if configured, for matches without vision."""
 
 import numpy as np
+from pydantic import NonNegativeFloat
 
 from fwk import Clock, Component, Config, Each, Reads, Writes, channel
 from lcmtypes.soccer import (
@@ -24,10 +25,10 @@ _ROUNDING_M2 = 1e-8
 class PerfectWorldModelConfig(Config):
     """Standard deviations of the errors."""
 
-    place_sd_m: float = 0.0
-    heading_sd_rad: float = 0.0
-    ball_sd_m: float = 0.0
-    ball_velocity_sd_m_s: float = 0.0
+    place_sd_m: NonNegativeFloat = 0.0
+    heading_sd_rad: NonNegativeFloat = 0.0
+    ball_sd_m: NonNegativeFloat = 0.0
+    ball_velocity_sd_m_s: NonNegativeFloat = 0.0
 
 
 class PerfectWorldModel(Component):

@@ -121,7 +121,7 @@ def _mistakes(scenario: Scenario) -> list[str]:
         if action.at_s >= scenario.time_s:
             found.append(f"commands.{place}: at_s is {action.at_s:g}; the scenario ends at {scenario.time_s:g} s")
     if not found:
-        found += place_mistakes(_simulator_settings(scenario))
+        found += place_mistakes(scenario.places, _simulator_settings(scenario))
     if not found:
         found += _unknown_in(scenario)
     if not (scenario.eventually or scenario.in_order or scenario.always or scenario.at_end):
@@ -143,8 +143,8 @@ def _unknown_in(scenario: Scenario) -> list[str]:
 
 
 def _simulator_settings(scenario: Scenario) -> SimulatorConfig:
-    given = {"starts": scenario.places, "realism": scenario.realism}
-    return SimulatorConfig.model_validate(given | scenario.settings.get("world/simulator", {}))
+    """Returns the settings of the simulator, without the places of the scenario."""
+    return SimulatorConfig.model_validate({"realism": scenario.realism} | scenario.settings.get("world/simulator", {}))
 
 
 def _config(kind: type[Component]) -> type[Config] | None:

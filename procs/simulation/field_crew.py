@@ -29,28 +29,35 @@ class FieldCrew:
         """Takes all waiting commands."""
         for beginning in reset:
             self._world.return_to_starts()
-            if not beginning.value.keep_ball:
-                self._world.place_ball(0.0, 0.0)
-            beginning.done()
+            if beginning.value.keep_ball or self._world.place_ball(0.0, 0.0):
+                beginning.done()
+            else:
+                beginning.fail(_NO_ROOM_FOR_BALL)
         for robot in place_robot:
             mistake = self._mistake_in_robot(robot.value)
             if mistake:
                 robot.reject(mistake)
                 continue
             wanted = robot.value
-            self._world.place_robot(wanted.robot, Pose(wanted.x_m, wanted.y_m, wanted.heading_rad))
-            robot.done()
+            if self._world.place_robot(wanted.robot, Pose(wanted.x_m, wanted.y_m, wanted.heading_rad)):
+                robot.done()
+            else:
+                robot.reject(f"there is no room left for {wanted.robot} between the walls")
         for ball in place_ball:
             mistake = self._mistake_in_ball(ball.value)
             if mistake:
                 ball.reject(mistake)
                 continue
             throw = ball.value
-            self._world.place_ball(throw.x_m, throw.y_m)
+            if not self._world.place_ball(throw.x_m, throw.y_m):
+                ball.reject(_NO_ROOM_FOR_BALL)
+                continue
             self._world.throw_ball(throw.z_m, (throw.vx_m_s, throw.vy_m_s, throw.vz_m_s))
             ball.done()
         for wish in freeze:
             self.frozen = bool(wish.value.frozen)
+            if self.frozen:
+                self._world.drop_kicks()
             wish.done()
 
     def _mistake_in_robot(self, wanted: place_robot_t) -> str:
@@ -77,5 +84,6 @@ class FieldCrew:
         return f"({x_m:g}, {y_m:g}) is outside the walls; x is at most {self._x_m:g} m, y {self._y_m:g} m"
 
 
+_NO_ROOM_FOR_BALL = "there is no room left for the ball between the walls"
 _HIGHEST_M = 5.0
 _FASTEST_M_S = 15.0

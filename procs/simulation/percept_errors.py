@@ -17,19 +17,19 @@ class PerceptErrors(BaseModel):
     latency_s: float = 0.0
     """From the exposure until the percepts are published. ER-Force: 35 ms, MRA: 25 ms."""
     shake_px: float = 0.0
-    """Standard deviation by which the standing robot's mirror shakes everything that a frame shows."""
+    """Standard deviation by which the standing robot's mirror shakes everything that a frame shows, in pixels."""
     shake_px_per_m_s: float = 0.0
-    """Growth of that deviation with each m/s of the robot."""
+    """Growth of that deviation with each m/s of the robot, in pixels. The same as that of the camera."""
     ball_px: float = 0.0
-    """Standard deviation of the ball's place."""
+    """Standard deviation of the ball's place, in pixels. Fitted to rendered pictures."""
     ball_area_px: float = 0.0
     """Relative standard deviation of the ball's area, by which a ball in the air is known, times its radius."""
     robot_along_px: float = 0.0
-    """Standard deviation of a robot's place along the ray from the camera."""
+    """Standard deviation of a robot's place along the ray from the camera, in pixels. Fitted to rendered pictures."""
     robot_across_px: float = 0.0
     """The same across the ray."""
     line_px: float = 0.0
-    """Standard deviation of a point on a line."""
+    """Standard deviation of a point on a line, in pixels. Fitted to rendered pictures."""
     ball_missed: float = 0.0
     """Part of the frames in which a visible ball is not found. ER-Force: 5 %."""
     robot_missed: float = 0.0
@@ -37,7 +37,7 @@ class PerceptErrors(BaseModel):
     team_missed: float = 0.0
     """Part of the robots whose marker's colour is not recognized. An estimate from rendered pictures."""
     line_missed: float = 0.0
-    """Part of the line points that are not found."""
+    """Part of the line points that are not found. Fitted to rendered pictures."""
     ball_phantoms_1_s: float = 0.0
     """Balls a second that are not there. B-Human: 0.0005 a frame."""
     mouth_phantoms_1_s: float = 0.0
@@ -45,7 +45,7 @@ class PerceptErrors(BaseModel):
     robot_phantoms_1_s: float = 0.0
     """Robots a second that are not there. B-Human: 0.005 a frame."""
     line_phantoms: float = 0.0
-    """Part of the points that do not lie on a line."""
+    """Part of the points that do not lie on a line. An estimate."""
     tilt_sd_deg: float = 0.0
     """Standard deviation of the mirror's uncalibrated tilt about the robot's x and y axis, constant in a match."""
     gaps_1_min: float = 0.0

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from pydantic import Field as Setting
+from pydantic import PositiveFloat
 
 from fwk import Clock, Component, Config, Logger, Reads, Writes, channel
 from lcmtypes.soccer import (
@@ -42,23 +43,35 @@ class PerceptsConfig(Config):
     latency_s: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Delay from the exposure until the percepts are published."""
     shake_px: float | None = Setting(default=None, ge=0.0, le=3.0)
-    """Standard deviation by which the standing robot's mirror shakes."""
+    """Standard deviation by which the standing robot's mirror shakes, in pixels."""
+    shake_px_per_m_s: float | None = Setting(default=None, ge=0.0, le=3.0)
+    """Growth of that deviation with each m/s of the robot, in pixels."""
     ball_px: float | None = Setting(default=None, ge=0.0)
     """Standard deviation of the ball's place, in pixels."""
     ball_area_px: float | None = Setting(default=None, ge=0.0)
     """Relative standard deviation of the ball's area in the picture, times its radius in pixels."""
+    robot_along_px: float | None = Setting(default=None, ge=0.0)
+    """Standard deviation of a robot's place along the ray from the camera, in pixels."""
+    robot_across_px: float | None = Setting(default=None, ge=0.0)
+    """The same across the ray."""
+    line_px: float | None = Setting(default=None, ge=0.0)
+    """Standard deviation of a point on a line, along and across the ray, in pixels."""
     ball_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the frames in which a visible ball is not found."""
     robot_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the frames in which a visible robot is not found."""
     team_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the visible robots whose team is not recognized."""
+    line_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
+    """Part of the line points that are not found."""
     ball_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
     """Balls a second that are not there."""
     mouth_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
     """Balls a second that seem to lie in the own mouth."""
     robot_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
     """Robots a second that are not there."""
+    line_phantoms: float | None = Setting(default=None, ge=0.0, le=1.0)
+    """Part of the points that do not lie on a line."""
     tilt_sd_deg: float | None = Setting(default=None, ge=0.0, le=2.0)
     """Standard deviation of the mirror's uncalibrated tilt about either axis, constant in a match."""
     gaps_1_min: float | None = Setting(default=None, ge=0.0)
@@ -73,7 +86,7 @@ class PerceptsConfig(Config):
     """Size of the ball."""
     rays: int = Setting(default=180, ge=16, le=720)
     """Scan lines around the robot, as the detector of lines has them."""
-    ring_distances_m: tuple[float, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
+    ring_distances_m: tuple[PositiveFloat, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
     """Radii of the rings, as the detector of lines has them."""
     reach_m: float = Setting(default=7.0, gt=0.5)
     """Largest distance of robots and line points."""

@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 from pydantic import Field as Setting
-from pydantic import PositiveFloat
+from pydantic import PositiveFloat, ValidationInfo, field_validator
 
 from fwk import Clock, Component, Config, Each, Logger, Reads, Serves, TimeSource, Writes, channel
 from lcmtypes.robot import battery_state_t, imu_t, kicker_drive_t, kicker_sensor_t, wheel_command_t, wheel_state_t
@@ -20,21 +20,24 @@ from lcmtypes.soccer import (
     reset_world_t,
 )
 from procs.model.ball import BALL, BallModel
-from procs.model.field import Field
+from procs.model.field import Field, Point
 from procs.model.kinematics import Wheels
 from procs.model.realism import Realism
-from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
+from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel, player_of
 from procs.model.units import US_PER_S
 from procs.model.wheel_messages import WheelReader
 from procs.simulation.field_crew import FieldCrew
+from procs.simulation.physics.events import Event
 from procs.simulation.physics.kick_mechanism import KickerCommand
 from procs.simulation.physics.realism import Changes, noise_of
 from procs.simulation.physics.reports import event_message, field_message, robot_message
+from procs.simulation.physics.room import Room
 from procs.simulation.physics.sensors import Encoders, Imu
 from procs.simulation.physics.settings import PhysicsSettings
 from procs.simulation.physics.start_places import Pose
 from procs.simulation.physics.world import World
 
+Starts = dict[str, tuple[float, float, float]]
 _STOPPED: Wheels = (0.0, 0.0, 0.0)
 _BATTERY_US = US_PER_S  # from one message about the batteries to the next
 _FIELD_TICKS = 100  # from one message with the measures of the field to the next, for readers that come late
@@ -57,7 +60,7 @@ class SimulatorConfig(Config):
     """Deviation of actuators and sensors from the ideal: none, friendly, realistic or harsh."""
     errors: Changes = Setting({}, frozen=True)
     """Errors and delays that differ from those of the preset, by name: `{drive_delay_s: 0.1}`."""
-    starts: dict[str, tuple[float, float, float]] = Setting({}, frozen=True)
+    starts: Starts = Setting({}, frozen=True)
     """Starts of the robots: name to x in m, y in m and heading in rad (world frame); others take the default place."""
     period_s: float = Setting(0.0, ge=0.0, frozen=True)
     """Logical time of a tick; 0: the system's."""
@@ -65,6 +68,16 @@ class SimulatorConfig(Config):
     """Wheels and ball handling stop when their command is older."""
     stuck_wheels: dict[str, tuple[Literal[1, 2, 3], ...]] = {}
     """Faults: wheels that do not turn, by robot: `{cyan3: [2]}`."""
+
+    @field_validator("starts")
+    @classmethod
+    def _possible(cls, starts: Starts, info: ValidationInfo) -> Starts:
+        """Refuses starts where no robot has room; field and robot have been checked before."""
+        if {"field", "robot"} <= info.data.keys():
+            places = {robot: Point(x_m, y_m) for robot, (x_m, y_m, _) in starts.items()}
+            if mistakes := list(Room(info.data["field"]).mistakes_in(places, info.data["robot"].radius_m)):
+                raise ValueError("; ".join(mistakes))
+        return starts
 
 
 class Simulator(Component):
@@ -104,11 +117,9 @@ class Simulator(Component):
             for stranger in sorted(set(named) - set(robots)):
                 known = ", ".join(robots) or "none"
                 raise ValueError(f"{self.name}: {setting}: no robot '{stranger}'; there are: {known}")
-        backs: dict[tuple[str, int], str] = {}
-        for robot, player in ((robot, config.players[robot]) for robot in robots if robot in config.players):
-            other = backs.setdefault((player.team, player.number), robot)
-            if other != robot:
-                raise ValueError(f"{self.name}: players: {other} and {robot} are both {player.team} {player.number}")
+        found = {robot: player_of(robot, config.players) for robot in robots}
+        self._players = {robot: player for robot, player in found.items() if player}
+        self._check_players()
         starts = {robot: Pose(*pose) for robot, pose in config.starts.items()}
         self._world = World(
             robots,
@@ -119,7 +130,7 @@ class Simulator(Component):
             config.physics,
             noise,
             starts,
-            config.players,
+            self._players,
         )
         self._crew = FieldCrew(self._world, config.field)
         self._encoders = {robot: Encoders(noise, self.rng) for robot in robots}
@@ -144,8 +155,10 @@ class Simulator(Component):
         self.time_source.next_us = now_us + self._period_us
         self._place_ball()
         self._crew.carry_out(self.place_robot, self.place_ball, self.freeze, self.reset)
-        self._command_robots()
-        events = [] if self._crew.frozen else self._world.advance(passed_us)
+        events: list[Event] = []
+        if not self._crew.frozen:
+            self._command_robots()
+            events = self._world.advance(passed_us)
         self._sense(passed_us / US_PER_S)
         self._check_batteries()
         self._report_truth()
@@ -153,12 +166,22 @@ class Simulator(Component):
         report.ball_in_field = self._world.ball_in_field
         report.ball_x_m, report.ball_y_m = self._world.ball.body.position
         report.ball_speed_m_s = 0.0 if self._crew.frozen else self._world.ball.speed_m_s
-        report.last_touch = self._world.last_touch
-        report.events = [event_message(event, self.config.players) for event in events]
+        report.last_touch, report.frozen = self._world.last_touch, self._crew.frozen
+        report.events = [event_message(event, self._players) for event in events]
         self.match_events.write()
         if self.clock.tick % _FIELD_TICKS == 1:
             self.field.value = field_message(self.config.field)
             self.field.write()
+
+    def _check_players(self) -> None:
+        """Refuses robots of one team and number. Names give those of robots without an entry in `players`."""
+        stated = self.config.players
+        for robot in sorted(self._players, key=lambda name: (name in stated, name)):
+            player, rivals = self._players[robot], self._players if robot in stated else stated
+            for other in sorted(name for name, rival in rivals.items() if rival == player and name != robot):
+                pair = f"{min(robot, other)} and {max(robot, other)} are both {player.team} {player.number}"
+                missing = "" if robot in stated else f"; players.{robot} is missing"
+                raise ValueError(f"{self.name}: players: {pair}{missing}")
 
     def _spoil_wheels(self) -> None:
         for stranger in sorted(set(self.config.stuck_wheels) - set(self._world.robots)):
@@ -172,7 +195,10 @@ class Simulator(Component):
                 continue
             self._placement_id = placement.placement_id
             if math.isfinite(placement.x_m) and math.isfinite(placement.y_m):
-                self._world.place_ball(placement.x_m, placement.y_m)
+                if not self._world.place_ball(placement.x_m, placement.y_m):
+                    self.log.warning(
+                        f"ball placement {placement.placement_id}: there is no room left for the ball between the walls"
+                    )
             else:
                 self.log.warning(
                     f"ball placement {placement.placement_id} asks for ({placement.x_m}, {placement.y_m}); ignored"
@@ -243,7 +269,7 @@ class Simulator(Component):
             writer.write()
 
     def _report_truth(self) -> None:
-        truth, ball, players = self.ground_truth.value, self._world.ball, self.config.players
+        truth, ball, players = self.ground_truth.value, self._world.ball, self._players
         moves = not self._crew.frozen
         truth.ball_x_m, truth.ball_y_m = ball.body.position
         truth.ball_z_m = ball.z_m

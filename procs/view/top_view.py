@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 
 from lcmtypes.soccer import game_state_t, ground_truth_t, true_robot_t, world_model_t
-from procs.model.ball import RADIUS_M as _BALL_RADIUS_M
-from procs.model.field import Field, field_of
-from procs.model.robot import ROBOT, number_in, team_in
+from procs.model.ball import BALL as BALL_MODEL
+from procs.model.ball import BallModel
+from procs.model.field import Field, Point, field_of
+from procs.model.geometry import ahead
+from procs.model.robot import ROBOT, RobotModel, number_in, team_in
 from procs.view.beliefs import draw_beliefs
 from procs.view.canvas import Canvas, Colour, Picture, write
 from procs.view.ground import draw_ground
@@ -28,16 +30,23 @@ TEXT: Colour = (245, 245, 245)
 TRUTH = "world/ground_truth"
 MEASURES = "world/field"
 
-_ROBOT_RADIUS_M = ROBOT.radius_m
-_MOUTH_RAD = math.radians(ROBOT.mouth_half_angle_deg)
 _TAIL_S = 0.12
+_MARKER = 0.64  # radius of the team marker, as a part of the robot's
 
 
 class TopView:
     """Draws pictures of one size; cyan's goal is on the left."""
 
-    def __init__(self, width_px: int = 1280, field: Field | None = None) -> None:
+    def __init__(
+        self,
+        width_px: int = 1280,
+        field: Field | None = None,
+        robot: RobotModel = ROBOT,
+        ball: BallModel = BALL_MODEL,
+    ) -> None:
         """The height follows from the field; both are even, as video encoders require."""
+        self._radius_m, self._ball_radius_m = robot.radius_m, ball.radius_m
+        self._mouth_rad = math.radians(robot.mouth_half_angle_deg)
         self._field = field or Field()
         margin_m = self._field.border_m
         self._bar_px = round(width_px / 24)
@@ -67,24 +76,23 @@ class TopView:
         return canvas.picture
 
     def _draw_robot(self, canvas: Canvas, robot: true_robot_t) -> None:
-        place = (robot.x_m, robot.y_m)
-        canvas.disc((robot.x_m + 0.04, robot.y_m - 0.05), _ROBOT_RADIUS_M, SHADOW)
-        canvas.polygon(_outline(robot, _ROBOT_RADIUS_M), EDGE)
-        canvas.polygon(_outline(robot, _ROBOT_RADIUS_M - 0.03), BODY)
-        canvas.disc(place, 0.16, TEAM_COLOURS.get(team_in(robot), UNKNOWN_TEAM))
-        nose = (robot.x_m + 0.24 * math.cos(robot.heading_rad), robot.y_m + 0.24 * math.sin(robot.heading_rad))
-        base = (robot.x_m + 0.16 * math.cos(robot.heading_rad), robot.y_m + 0.16 * math.sin(robot.heading_rad))
-        canvas.line(base, nose, 0.05, TEXT)
+        place, radius_m = Point(robot.x_m, robot.y_m), self._radius_m
+        canvas.disc((robot.x_m + 0.04, robot.y_m - 0.05), radius_m, SHADOW)
+        canvas.polygon(_outline(robot, radius_m, self._mouth_rad), EDGE)
+        canvas.polygon(_outline(robot, 0.88 * radius_m, self._mouth_rad), BODY)
+        canvas.disc(place, _MARKER * radius_m, TEAM_COLOURS.get(team_in(robot), UNKNOWN_TEAM))
+        base, nose = (ahead(place, robot.heading_rad, share * radius_m) for share in (_MARKER, 0.96))
+        canvas.line(base, nose, 0.2 * radius_m, TEXT)
         number = number_in(robot)
-        canvas.text(str(number) if number else "?", place, 0.18, TEXT)
+        canvas.text(str(number) if number else "?", place, 0.72 * radius_m, TEXT)
 
     def _draw_ball(self, canvas: Canvas, truth: ground_truth_t) -> None:
         tail = (truth.ball_x_m - _TAIL_S * truth.ball_vx_m_s, truth.ball_y_m - _TAIL_S * truth.ball_vy_m_s)
-        place = (truth.ball_x_m, truth.ball_y_m)
+        place, radius_m = (truth.ball_x_m, truth.ball_y_m), self._ball_radius_m
         canvas.line(tail, place, 0.05, BALL)
-        canvas.disc((place[0] + 0.03, place[1] - 0.04), _BALL_RADIUS_M, SHADOW)
-        canvas.disc(place, _BALL_RADIUS_M, BALL_EDGE)
-        canvas.disc(place, _BALL_RADIUS_M - 0.025, BALL)
+        canvas.disc((place[0] + 0.03, place[1] - 0.04), radius_m, SHADOW)
+        canvas.disc(place, radius_m, BALL_EDGE)
+        canvas.disc(place, 0.77 * radius_m, BALL)
 
     def _draw_bar(self, picture: Picture, state: game_state_t | None) -> None:
         picture[: self._bar_px] = BAR
@@ -104,7 +112,7 @@ class TopView:
 def picture(newest: Callable[[str], Any]) -> Picture | None:
     """Draws the newest messages, decoded, of a running or recorded match; None before the world was seen."""
     truth = newest(TRUTH)
-    return None if truth is None else _view(_field(newest)).draw(truth, newest(GAME_STATE))
+    return None if truth is None else _view_of(newest).draw(truth, newest(GAME_STATE))
 
 
 def picture_with_beliefs(newest: Callable[[str], Any]) -> Picture | None:
@@ -114,12 +122,22 @@ def picture_with_beliefs(newest: Callable[[str], Any]) -> Picture | None:
         return None
     models = {robot.name: newest(f"{robot.name}/world_model") for robot in truth.robots}
     beliefs = {name: model for name, model in models.items() if model is not None}
-    return _view(_field(newest)).draw(truth, newest(GAME_STATE), beliefs)
+    return _view_of(newest).draw(truth, newest(GAME_STATE), beliefs)
+
+
+def _view_of(newest: Callable[[str], Any]) -> TopView:
+    robot, ball = _settings(newest, "robot"), _settings(newest, "ball")
+    return _view(_field(newest), RobotModel.model_construct(**robot), BallModel.model_construct(**ball))
 
 
 @cache
-def _view(field: Field) -> TopView:
-    return TopView(field=field)
+def _view(field: Field, robot: RobotModel, ball: BallModel) -> TopView:
+    return TopView(field=field, robot=robot, ball=ball)
+
+
+def _settings(newest: Callable[[str], Any], name: str) -> dict[str, Any]:
+    """Returns the simulator's settings of the robot or the ball; empty, for the usual ones, where none are known."""
+    return newest.settings("world/*", name) if hasattr(newest, "settings") else {}
 
 
 def _field(newest: Callable[[str], Any]) -> Field:
@@ -128,9 +146,9 @@ def _field(newest: Callable[[str], Any]) -> Field:
     return Field() if measures is None else field_of(measures)
 
 
-def _outline(robot: true_robot_t, radius_m: float) -> list[tuple[float, float]]:
+def _outline(robot: true_robot_t, radius_m: float, mouth_rad: float) -> list[tuple[float, float]]:
     """Returns a circle whose front is cut off."""
     steps = 24
-    span_rad = 2 * math.pi - 2 * _MOUTH_RAD
-    angles = [robot.heading_rad + _MOUTH_RAD + span_rad * step / steps for step in range(steps + 1)]
+    span_rad = 2 * math.pi - 2 * mouth_rad
+    angles = [robot.heading_rad + mouth_rad + span_rad * step / steps for step in range(steps + 1)]
     return [(robot.x_m + radius_m * math.cos(angle), robot.y_m + radius_m * math.sin(angle)) for angle in angles]

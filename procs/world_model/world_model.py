@@ -26,7 +26,7 @@ from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
 from procs.model.frames import Floats
 from procs.model.geometry import plausible
-from procs.model.robot import PLAYERS, ROBOT, TEAM_NUMBERS, Players, RobotModel
+from procs.model.robot import PLAYERS, ROBOT, TEAM_NUMBERS, Players, RobotModel, player_of
 from procs.model.units import US_PER_S
 from procs.world_model.ball_track import Sighting, Walls
 from procs.world_model.ball_tracker import BallTracker
@@ -152,7 +152,7 @@ class WorldModel(Component):
             self._ball = BallTracker(self.config.ball)  # another ball, which no robot has seen yet
         self._walls = Walls.of(self.config.field, self.config.ball)
         self._rules = self._opponent_settings()
-        player = self.config.players.get(self._robot)
+        player = player_of(self._robot, self.config.players)
         self._own_team = TEAM_NUMBERS[player.team] if player else 0
         self._mouth_m = self.config.robot.held_ball_m(self.config.ball)  # from the robot's middle to a held ball's
 
@@ -300,7 +300,7 @@ class WorldModel(Component):
 
     def _tell_team(self, view: OwnView) -> None:
         """Sends the own state with the newest own sightings, each once."""
-        player = self.config.players.get(self._robot)
+        player = player_of(self._robot, self.config.players)
         message = self.team_message.value
         message.robot, message.number = self._robot, player.number if player else 0
         role = self.role.value

@@ -2,7 +2,7 @@
 
 import pymunk
 
-from procs.model.field import SIDES, Field, Point
+from procs.model.field import SIDES, Field, Point, Segment
 from procs.simulation.physics.settings import ContactSettings
 
 WALL, BALL, ROBOT, HULL = 1, 2, 3, 4
@@ -28,7 +28,15 @@ def ball_filter(over_robots: bool = False, over_goals: bool = False) -> pymunk.S
 
 
 _WALL_RADIUS_M = 0.05
-_NET_RADIUS_M = 0.02
+NET_RADIUS_M = 0.02
+
+
+def nets(field: Field, side: float) -> tuple[Segment, Segment, Segment]:
+    """Returns the middles of the nets of a goal: those that begin at the posts, in their order, and the back."""
+    first, second = field.goal_posts(side)
+    back_m = side * (field.half_length_m + field.goal_depth_m + NET_RADIUS_M)
+    corners = Point(back_m, first.y_m), Point(back_m, second.y_m)
+    return Segment(first, corners[0]), Segment(second, corners[1]), Segment(*corners)
 
 
 def build_arena(space: pymunk.Space, field: Field, contacts: ContactSettings) -> None:
@@ -40,8 +48,8 @@ def build_arena(space: pymunk.Space, field: Field, contacts: ContactSettings) ->
         shape.elasticity, shape.friction = bounce, friction
         space.add(shape)
 
-    def add_net(start: Point, end: Point) -> None:
-        add(pymunk.Segment(space.static_body, start, end, _NET_RADIUS_M), contacts.net_bounce, GOAL_FILTER)
+    def add_net(net: Segment) -> None:
+        add(pymunk.Segment(space.static_body, net.start, net.end, NET_RADIUS_M), contacts.net_bounce, GOAL_FILTER)
 
     x_m = field.half_length_m + field.border_m + _WALL_RADIUS_M
     y_m = field.half_width_m + field.border_m + _WALL_RADIUS_M
@@ -49,9 +57,8 @@ def build_arena(space: pymunk.Space, field: Field, contacts: ContactSettings) ->
     for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
         add(pymunk.Segment(space.static_body, start, end, _WALL_RADIUS_M), contacts.wall_bounce, WALL_FILTER)
     for side in SIDES:
-        posts = field.goal_posts(side)
-        back_m = side * (field.half_length_m + field.goal_depth_m + _NET_RADIUS_M)
-        for post in posts:
+        *beside, back = nets(field, side)
+        for post, net in zip(field.goal_posts(side), beside, strict=True):
             add(pymunk.Circle(space.static_body, field.post_diameter_m / 2, post), contacts.post_bounce, GOAL_FILTER)
-            add_net(post, Point(back_m, post.y_m))
-        add_net(Point(back_m, posts[0].y_m), Point(back_m, posts[1].y_m))
+            add_net(net)
+        add_net(back)

@@ -56,8 +56,7 @@ class Ball:
         self.z_m += self.vz_m_s * duration_s - GRAVITY_M_S2 * duration_s**2 / 2
         self.vz_m_s -= GRAVITY_M_S2 * duration_s
         if self.z_m <= 0.0:
-            rebound_m_s = -self._bounce * self.vz_m_s
-            self.z_m, self.vz_m_s = 0.0, rebound_m_s if rebound_m_s > self._least_rebound_m_s else 0.0
+            self._bounce_off()
         self._shape.filter = ball_filter(self.z_m > self._robot_height_m, self.z_m > self._goal_height_m)
 
     def rub(self, duration_s: float) -> None:
@@ -67,6 +66,13 @@ class Ball:
         self.body.angular_velocity *= math.exp(-duration_s / self._spin_s)
         self.body.velocity = self.friction.advance(*self.body.velocity, duration_s)
 
+    def throw(self, height_m: float, vx_m_s: float, vy_m_s: float, vz_m_s: float) -> None:
+        """Lifts the ball to a height and gives it a velocity; one that is thrown down on the ground bounces at once."""
+        self.z_m, self.vz_m_s = max(0.0, height_m), vz_m_s
+        self.body.velocity = (vx_m_s, vy_m_s)
+        if not self.z_m and vz_m_s < 0.0:
+            self._bounce_off()
+
     def put(self, x_m: float, y_m: float) -> None:
         """Lays the ball down at rest."""
         self.z_m = self.vz_m_s = 0.0
@@ -75,3 +81,8 @@ class Ball:
         self.body.velocity = (0.0, 0.0)
         self.body.angular_velocity = 0.0
         self.friction.roll(0.0, 0.0)
+
+    def _bounce_off(self) -> None:
+        """Sends the ball, which has reached the ground, up again; a slow one stays there."""
+        rebound_m_s = -self._bounce * self.vz_m_s
+        self.z_m, self.vz_m_s = 0.0, rebound_m_s if rebound_m_s > self._least_rebound_m_s else 0.0

@@ -21,6 +21,11 @@ class DelayLine(Generic[T]):
         self._waiting.append((now_us + self._delay_us, item))
         self.next_us = self._waiting[0][0]
 
+    def clear(self) -> None:
+        """Drops everything that has not come out yet."""
+        self._waiting.clear()
+        self.next_us = sys.maxsize
+
     def due(self, now_us: int) -> list[T]:
         """Takes out everything whose time has come, oldest first."""
         items = []

@@ -56,6 +56,10 @@ class Kicker:
         """Takes the newest command of the driver."""
         self._line.put(command, now_us)
 
+    def drop_commands(self) -> None:
+        """Drops the commands that have not taken effect yet."""
+        self._line.clear()
+
     def charged(self, now_us: int) -> bool:
         """Returns whether a kick is possible."""
         return now_us >= self._charged_from_us

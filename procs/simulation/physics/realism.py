@@ -6,7 +6,7 @@ files of ER-Force's simulator. Values without a source are estimates.
 
 from typing import Annotated
 
-from pydantic import AfterValidator, BaseModel, ConfigDict
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from procs.model.realism import Realism
 
@@ -14,33 +14,33 @@ from procs.model.realism import Realism
 class Noise(BaseModel):
     """Errors and delays of actuators and sensors; `_sd` is a standard deviation. 0: ideal."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    drive_delay_s: float = 0.0
+    drive_delay_s: float = Field(default=0.0, ge=0.0, le=1.0)
     """From the arrival of a wheel command until the motors follow it. CAMBADA: 140 ms, Tribots: 200 ms for the loop."""
-    kick_delay_s: float = 0.0
+    kick_delay_s: float = Field(default=0.0, ge=0.0, le=1.0)
     """From the arrival of a kicker command until the kicker follows it. NuBot: 100 ms with a relay."""
-    kick_direction_sd_deg: float = 0.0
+    kick_direction_sd_deg: float = Field(default=0.0, ge=0.0, le=90.0)
     """Error of a kick's direction. CAMBADA accepts 1 degree."""
-    kick_speed_sd: float = 0.0
+    kick_speed_sd: float = Field(default=0.0, ge=0.0, le=1.0)
     """Relative error of a kick's speed."""
-    friction_spread: float = 0.0
+    friction_spread: float = Field(default=0.0, ge=0.0, lt=1.0)
     """The ball's sliding and rolling deceleration are scaled by a factor between one minus and one plus this; 30 %
     cover the published values."""
-    handling_loss: float = 0.0
+    handling_loss: float = Field(default=0.0, ge=0.0, le=1.0)
     """Share of the ball handling's force that is missing; the handling loses a ball that asks for more."""
-    wheel_scale_sd: float = 0.0
+    wheel_scale_sd: float = Field(default=0.0, ge=0.0, le=1.0)
     """Relative error of each wheel's encoder, constant in a match. Twente: a constant factor for each axis."""
-    wheel_noise_sqrt_s: float = 0.0
+    wheel_noise_sqrt_s: float = Field(default=0.0, ge=0.0)
     """Relative error of the way that a wheel measures in one second, with steady speed. Tick by tick it is larger by
     the square root of the ticks in a second."""
-    compass_noise_sqrt_s: float = 0.0
+    compass_noise_sqrt_s: float = Field(default=0.0, ge=0.0)
     """Error in rad of the compass averaged over one second."""
-    compass_drift_sd_rad: float = 0.0
+    compass_drift_sd_rad: float = Field(default=0.0, ge=0.0)
     """Drift of the compass after one minute; it grows with the square root of time."""
-    gyro_noise_sqrt_s: float = 0.0
+    gyro_noise_sqrt_s: float = Field(default=0.0, ge=0.0)
     """Error in rad of the heading that the gyro measures in one second."""
-    gyro_bias_sd_rad_s: float = 0.0
+    gyro_bias_sd_rad_s: float = Field(default=0.0, ge=0.0)
     """Constant error of the yaw rate; 0.1 degrees a second are usual for cheap gyros."""
 
 
@@ -91,13 +91,18 @@ PRESETS: dict[Realism, Noise] = {
 }
 
 
-def _known(changes: dict[str, float]) -> dict[str, float]:
+def _checked(changes: dict[str, float]) -> dict[str, float]:
     for name in sorted(set(changes) - set(Noise.model_fields)):
         raise ValueError(f"no error '{name}'; there are {', '.join(Noise.model_fields)}")
+    try:
+        Noise(**changes)
+    except ValidationError as error:
+        mistakes = [found["msg"].replace("Input", str(found["loc"][0])) for found in error.errors()]
+        raise ValueError("; ".join(mistakes)) from None
     return changes
 
 
-Changes = Annotated[dict[str, float], AfterValidator(_known)]
+Changes = Annotated[dict[str, float], AfterValidator(_checked)]
 """Errors by name that differ from those of a preset."""
 
 

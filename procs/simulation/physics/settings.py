@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, PositiveFloat, model_validato
 
 
 class _Settings(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 class DriveSettings(_Settings):
@@ -75,13 +75,13 @@ class ContactSettings(_Settings):
 class BatterySettings(_Settings):
     """Battery, and what takes energy out of it. A match of 2 x 15 minutes with its stops has to fit into one charge."""
 
-    capacity_wh: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] = 260.0
+    capacity_wh: Annotated[float, Field(gt=0.0)] = 260.0
     """Energy of a full battery in watt-hours: seven lithium cells in a row of 10 Ah and 3.7 V; an estimate."""
-    full_v: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] = 29.4
+    full_v: Annotated[float, Field(gt=0.0)] = 29.4
     """Voltage of a full battery in volts: seven cells of 4.2 V, as data sheets of lithium cells say."""
-    empty_v: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] = 21.0
+    empty_v: Annotated[float, Field(gt=0.0)] = 21.0
     """Voltage at which it counts as empty, in volts: seven cells of 3.0 V, as data sheets of lithium cells say."""
-    idle_w: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] = 100.0
+    idle_w: Annotated[float, Field(ge=0.0)] = 100.0
     """Power in watts of computer, cameras and electronics, whatever the robot does; an estimate."""
     drive_efficiency: Annotated[float, Field(gt=0.0, le=1.0)] = 0.6
     """Work of the wheels at their rims divided by the energy that motors and gears take for it; an estimate."""

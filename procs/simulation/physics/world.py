@@ -21,8 +21,9 @@ from procs.simulation.physics.kick_mechanism import Kicker, Push
 from procs.simulation.physics.mouth import Mouth
 from procs.simulation.physics.realism import Noise
 from procs.simulation.physics.robot_body import Robot
+from procs.simulation.physics.room import Room
 from procs.simulation.physics.settings import PhysicsSettings
-from procs.simulation.physics.start_places import Pose, free_place, starting_pose
+from procs.simulation.physics.start_places import Pose, starting_pose
 
 _FREE_M = 0.02  # between robot and ball when the field crew puts it down
 
@@ -42,7 +43,22 @@ class World:
         starts: Mapping[str, Pose] | None = None,
         players: Mapping[str, Player] = PLAYERS,
     ) -> None:
-        """`robots` are namespaces; those without a start in `starts` begin at the places of their `players`."""
+        """Sets the world up.
+
+        Args:
+            robots: their namespaces.
+            rng: source of all random numbers.
+            field: measures of the field.
+            robot: geometry of all robots.
+            ball: size and friction of the ball.
+            physics: motors, mouths, kickers, contacts.
+            noise: errors and delays.
+            starts: poses at the beginning; robots without one begin at the places of their `players`.
+            players: team and number by namespace.
+
+        Raises:
+            ValueError: there is no room for all robots.
+        """
         self.time_us = 0
         self.last_touch = ""
         """Robot that touched the ball last since it was placed."""
@@ -55,16 +71,16 @@ class World:
         build_arena(self._space, self._field, self._physics.contacts)
         friction_scale = 1.0 + noise.friction_spread * rng.uniform(-1.0, 1.0)
         self.ball = Ball(self._space, ball, friction_scale, robot.height_m, self._field.goal_height_m)
+        self._room = Room(self._field)
         self._clearance_m = robot.radius_m + ball.radius_m + _FREE_M
         self._bar = Crossbar(self._field, self.ball, self._physics.contacts.post_bounce)
         self.robots: dict[str, Robot] = {}
         self.kickers: dict[str, Kicker] = {}
         self.batteries: dict[str, Battery] = {}
-        self._starts: dict[str, Pose] = {}
+        self._starts = self._start_poses(sorted(robots), starts or {}, players)
         for name in sorted(robots):
             drive = Drive(robot, self._physics.drive, noise.drive_delay_s)
             body = self.robots[name] = Robot(self._space, name, robot, drive, self._physics.contacts)
-            self._starts[name] = (starts or {}).get(name) or starting_pose(players.get(name), self._field)
             body.put(*self._starts[name])
             mouth = Mouth(body, self.ball, self._physics.handling, 1.0 - noise.handling_loss)
             self.kickers[name] = Kicker(mouth, robot, self._physics.kicker, noise, rng)
@@ -81,35 +97,59 @@ class World:
         """True if the ball is on the field, lines included."""
         return self._judge.ball_in_field
 
+    def _start_poses(
+        self, robots: Sequence[str], starts: Mapping[str, Pose], players: Mapping[str, Player]
+    ) -> dict[str, Pose]:
+        """Returns the poses at the beginning; robots that share a usual place stand beside each other."""
+        found, radius_m = {name: starts[name] for name in robots if name in starts}, self._robot.radius_m
+        for name in (name for name in robots if name not in starts):
+            x_m, y_m, heading_rad = starting_pose(players.get(name), self._field)
+            taken = [Point(pose.x_m, pose.y_m) for pose in found.values()]
+            place = self._room.nearest(Point(x_m, y_m), radius_m, taken, 2 * radius_m)
+            if place is None:
+                raise ValueError(f"there is no room for {name} between the walls")
+            found[name] = Pose(*place, heading_rad)
+        return found
+
     def return_to_starts(self) -> None:
         """Sets all robots down at the places where they began, with full batteries."""
         for name, pose in self._starts.items():
-            self.place_robot(name, pose)
+            self.robots[name].put(*pose)
             self.batteries[name].refill()
+        self._clear_ball(self._middles(), self._middles())
 
-    def place_robot(self, name: str, pose: Pose) -> None:
-        """Sets a robot down at rest; a ball that lies in its way is put beside it."""
-        self.robots[name].put(*pose)
-        at, ball = Point(pose.x_m, pose.y_m), self.ball
-        if not ball.flies and math.dist(at, ball.body.position) < self._robot.mouth_m:
-            ball.put(*free_place(Point(*ball.body.position), [at], self._clearance_m))
+    def place_robot(self, name: str, pose: Pose) -> bool:
+        """Sets a robot down at rest, at the nearest place that is free; a ball that lies in its way is put beside it.
 
-    def place_ball(self, x_m: float, y_m: float) -> None:
-        """Puts the ball down at rest: inside the border, beside a robot that stands in the way."""
-        x_limit_m = self._field.half_length_m + self._field.border_m - self.ball.radius_m
-        y_limit_m = self._field.half_width_m + self._field.border_m - self.ball.radius_m
-        x_m, y_m = min(x_limit_m, max(-x_limit_m, x_m)), min(y_limit_m, max(-y_limit_m, y_m))
-        middles = [Point(*robot.body.position) for robot in self.robots.values()]
-        place = free_place(Point(x_m, y_m), middles, self._clearance_m)
-        self.ball.put(*place)
+        Returns False, and does nothing, if there is no room for it.
+        """
+        others = [Point(*robot.body.position) for robot in self.robots.values() if robot.name != name]
+        radius_m = self._robot.radius_m
+        place = self._room.nearest(Point(pose.x_m, pose.y_m), radius_m, others, 2 * radius_m)
+        if place is None or not self._clear_ball([place], [*others, place]):
+            return False
+        self.robots[name].put(*place, pose.heading_rad)
+        return True
+
+    def place_ball(self, x_m: float, y_m: float) -> bool:
+        """Puts the ball down at rest, at the nearest place that is free.
+
+        Returns False, and does nothing, if there is no room for it.
+        """
+        if not self._put_ball(Point(x_m, y_m), self._middles()):
+            return False
         self.last_touch = ""
-        self._judge.ball_in_field = self._field.in_field(*place, self.ball.radius_m)
+        self._judge.ball_in_field = self._field.in_field(*self.ball.body.position, self.ball.radius_m)
+        return True
 
     def throw_ball(self, height_m: float, velocity_m_s: tuple[float, float, float]) -> None:
         """Lifts the ball to a height and gives it a velocity, world frame."""
-        self.ball.z_m = max(0.0, height_m)
-        self.ball.body.velocity = velocity_m_s[:2]
-        self.ball.vz_m_s = velocity_m_s[2]
+        self.ball.throw(height_m, *velocity_m_s)
+
+    def drop_kicks(self) -> None:
+        """Drops the commands that the kickers have received but not yet followed."""
+        for kicker in self.kickers.values():
+            kicker.drop_commands()
 
     def advance(self, duration_us: int) -> list[Event]:
         """Moves the world on; returns the events, sorted by kind and robot."""
@@ -124,6 +164,23 @@ class World:
         self.time_us = start_us + duration_us
         self._drain_batteries(duration_us / 1e6)
         return sorted([*events, *touched.values(), *self._contacts.take_collisions()])
+
+    def _middles(self) -> list[Point]:
+        """Returns the middles of all robots."""
+        return [Point(*robot.body.position) for robot in self.robots.values()]
+
+    def _clear_ball(self, places: Sequence[Point], robots: Sequence[Point]) -> bool:
+        """Puts a ball that lies where robots are set down beside all `robots`; returns False if there is no room."""
+        ball = self.ball
+        if ball.flies or all(math.dist(place, ball.body.position) >= self._robot.mouth_m for place in places):
+            return True
+        return self._put_ball(Point(*ball.body.position), robots)
+
+    def _put_ball(self, wanted: Point, robots: Sequence[Point]) -> bool:
+        place = self._room.nearest(wanted, self.ball.radius_m, robots, self._clearance_m)
+        if place is not None:
+            self.ball.put(*place)
+        return place is not None
 
     def _drain_batteries(self, duration_s: float) -> None:
         for name, robot, kicker in self._in_order:

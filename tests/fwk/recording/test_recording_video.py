@@ -20,6 +20,7 @@ from fwk.model.plan_document import document_of
 from fwk.recording import video_encoder
 from fwk.recording.video import VideoError, drawing, render_video
 from fwk.recording.video_encoder import Picture, advice, open_encoder
+from fwk.testing import launch_plan
 from lcmtypes.core import plan_t, protocol_t
 from tests.fwk.recording.recording_made import entries, write
 
@@ -118,6 +119,36 @@ def test_the_command_uses_the_drawing_of_the_recorded_run(tmp_path: Path) -> Non
     assert (told["file"], told["pictures"]) == (str(out), 3)
     assert run(app, [str(log), "-o", "out.avi"]).exit_code == 2
     assert run(app, [str(tmp_path / "none"), "-o", str(out)]).exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("components", "name", "expected"),
+    [("world/*", "robot", 0.4), ("world/*", "period_s", 0.25), ("a/*", "robot", 0.25)],
+)
+def test_drawings_get_the_settings_of_the_run(tmp_path: Path, components: str, name: str, expected: float) -> None:
+    plan = launch_plan("soccer-1v1.yaml", ("shared.robot.radius_m=0.4",))
+    said = plan_t(version=protocol_t.VERSION, json=json.dumps(document_of(plan)))
+    log = write(tmp_path / "log", [("fwk/plan", said.encode(), 0), *entries(ticks=1)])
+    found: list[float] = []
+
+    def draw(newest: Any) -> Picture:
+        found.append(newest.settings(components, name).get("radius_m", 0.25))
+        return np.zeros((48, 64, 3), np.uint8)
+
+    render_video(log, tmp_path / "out.mp4", draw)
+    assert found == [expected]
+
+
+def test_a_damaged_plan_gives_drawings_no_settings(tmp_path: Path) -> None:
+    log = write(tmp_path / "log", [("fwk/plan", b"damaged", 0), *entries(ticks=1)])
+    found: list[dict[str, Any]] = []
+
+    def draw(newest: Any) -> Picture:
+        found.append(newest.settings("*", "robot"))
+        return np.zeros((48, 64, 3), np.uint8)
+
+    render_video(log, tmp_path / "out.mp4", draw)
+    assert found == [{}]
 
 
 def test_an_interrupted_video_can_be_played(tmp_path: Path) -> None:

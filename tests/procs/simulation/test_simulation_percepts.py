@@ -14,6 +14,7 @@ from procs.localization.line_map import line_map
 from procs.model.algebra import Floats
 from procs.model.field import Field
 from procs.simulation.camera import Camera
+from procs.simulation.percept_errors import PerceptErrors
 from procs.simulation.percepts import Percepts
 from procs.vision.omni_ball import OmniBall
 from procs.vision.omni_field import OmniField
@@ -254,6 +255,27 @@ def test_teams_are_recognized_but_for_a_share(share: float) -> None:
     teams = [one.team for percepts in eyes.port("obstacle_percepts").sent for one in percepts.obstacles]
     assert set(teams) == {2} if share == 0.0 else {0, 2}
     assert teams.count(2) / len(teams) == pytest.approx(1.0 - share, abs=0.06)
+
+
+def percepts_of(errors: dict[str, Any]) -> list[str]:
+    """Returns what a robot that drives sees of a ball that rises and is hidden at last."""
+    eyes = Bench(Percepts, name="cyan1/percepts", realism="none", **errors)
+    for step in range(20):
+        ball_m = (0.1 * step, -1.0) if step < 15 else (30.0, 0.0)
+        seen = truth(ball_m, (1.0, 2.5), (-2.0, 0.1 * step), ball_z_m=0.02 * step)
+        seen.robots[0].vx_m_s = 1.0
+        seen.header.time_us = eyes.time_us
+        look(eyes, seen)
+    return [
+        repr(sent) for port in ("ball_percept", "obstacle_percepts", "line_points") for sent in eyes.port(port).sent
+    ]
+
+
+@pytest.mark.parametrize("name", sorted(PerceptErrors.model_fields))
+def test_every_error_that_is_set_changes_the_percepts(name: str) -> None:
+    needed = {"gap_s": {"gaps_1_min": 600.0}, "gaps_1_min": {"gap_s": 1.0}}.get(name, {})
+    value = 600.0 if name == "gaps_1_min" else 20.0 if name.endswith("_1_s") else 0.9
+    assert percepts_of(needed | {name: value}) != percepts_of(needed)
 
 
 def test_robot_off_the_field_sees_nothing_and_reports_it_once() -> None:

@@ -31,6 +31,23 @@ def test_presets_of_every_part_grow_harsher(part: str) -> None:
         assert milder != harsher
 
 
+@pytest.mark.parametrize(
+    ("file", "component", "part"),
+    [
+        ("soccer.yaml", "*/camera", "camera"),
+        ("soccer-percepts.yaml", "*/percepts", "percepts"),
+        ("soccer-percepts.yaml", "team_*/radio", "radio"),
+    ],
+)
+def test_every_value_of_a_preset_is_a_setting(file: str, component: str, part: str) -> None:
+    harsh: dict[str, float] = PRESETS[part]["harsh"].model_dump()
+    plan = launch_plan(file, tuple(f"{component}.{name}={value}" for name, value in harsh.items()))
+    with_it = [each.config for each in plan.components if each.name.endswith(component.partition("/")[2])]
+    assert with_it
+    for config in with_it:
+        assert {name: config[name] for name in harsh} == harsh
+
+
 def test_single_values_override_the_preset() -> None:
     errors = chosen(camera_errors.PRESETS["harsh"], CameraConfig(latency_s=0.01))
     assert (errors.latency_s, errors.shake_px) == (0.01, 0.4)

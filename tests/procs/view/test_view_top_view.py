@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fwk.web import Newest
 from lcmtypes.soccer import game_state_t, ground_truth_t, true_robot_t, world_model_t
 from procs.model.field import Field
 from procs.simulation.physics.reports import field_message
@@ -110,6 +111,22 @@ def test_picture_shows_the_field_of_the_simulation() -> None:
     assert usual is not None
     assert drawn.shape[0] == TopView(drawn.shape[1], small).height_px
     assert drawn.shape[0] != usual.shape[0]
+
+
+def test_picture_shows_robot_and_ball_as_large_as_the_settings() -> None:
+    message = truth(("cyan1", -5.0, 1.0, 0.0))
+    usual = picture(Newest({"world/ground_truth": message}))
+    large = Newest(
+        {"world/ground_truth": message},
+        {("world/simulator", "robot.radius_m"): 0.4, ("world/simulator", "ball.radius_m"): 0.2},
+    )
+    drawn = picture(large)
+    assert drawn is not None
+    assert usual is not None
+    rows, columns = np.nonzero((drawn != usual).any(axis=2))
+    px_per_m, left = drawn.shape[1] / 24.0, columns < drawn.shape[1] / 2
+    assert np.ptp(rows[left]) / px_per_m == pytest.approx(0.8, abs=0.1)
+    assert np.ptp(rows[~left]) / px_per_m == pytest.approx(0.4, abs=0.1)
 
 
 def test_before_the_first_world_message_there_is_no_picture() -> None:
