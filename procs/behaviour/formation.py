@@ -21,7 +21,7 @@ _APART_M = 1.0
 """Least distance of two robots at a set piece."""
 _TURNS_RAD = [sign * 0.15 * step for step in range(1, 21) for sign in (1, -1)]
 _LENGTH_M, _WIDTH_M = 22.0, 14.0
-"""Field for which the numbers of `places` are; they become larger or smaller with the field."""
+"""Field for which the distances of formations are; they become larger or smaller with the field."""
 _BACK_M, _STOPPER_M = 0.75, 0.95  # before the own penalty area: the furthest place back, and the nearest to the goal
 _SHOOTER_M, _SHOOTER_Y_M = 1.75, 2.5  # a mate so far before the opponents' penalty area, and so far aside, can shoot
 _BESIDE_FIELD_M = 0.3  # a robot at the side of the field may stand so far outside
@@ -39,7 +39,7 @@ def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
     `ours`: the team has the ball or will have it sooner; the supporter then offers itself ahead of the ball,
     on its flank: -1 or 1.
     """
-    goal, along, across = field.goal_centre(-1.0), field.length_m / _LENGTH_M, field.width_m / _WIDTH_M
+    goal, (along, across) = field.goal_centre(-1.0), scale(field)
     back_m = _before_area_m(field, _BACK_M)
     shooter_m, shooter_aside_m = _before_area_m(field, _SHOOTER_M), _SHOOTER_Y_M * across
     if ours:
@@ -66,6 +66,11 @@ def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
     y_m = clamp(ball.y_m - flank * (2.0 * across), -aside_m, aside_m)
     spare = Point(clamp(ball.x_m - 3.0 * along, -back_m, 2.0 * along), y_m)
     return [supporter, stopper, sweeper, spare]
+
+
+def scale(field: Field) -> tuple[float, float]:
+    """Returns how many times as long and as wide as the usual field a field is."""
+    return field.length_m / _LENGTH_M, field.width_m / _WIDTH_M
 
 
 def _before_area_m(field: Field, distance_m: float) -> float:
