@@ -6,7 +6,7 @@ import random
 import pytest
 
 from fwk.testing import Bench
-from lcmtypes.soccer import robot_estimate_t, world_model_t
+from lcmtypes.soccer import drive_target_t, robot_estimate_t, world_model_t
 from procs.behaviour import formation
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.navigator import Navigator
@@ -67,7 +67,7 @@ def seconds_home(own: Point, place: Point, rivals: list[Point], whose: Whose) ->
         model.header.time_us = navigator.time_us
         navigator.port("world_model").put(model)
         step = formation.next_step(seen, place, game, FIELD, others)
-        target = navigator.port("drive_target").message_type(x_m=step.x_m, y_m=step.y_m, avoid_ball=True)
+        target = drive_target_t(x_m=step.x_m, y_m=step.y_m, avoid_ball=True)
         target.avoid_robots, target.header.time_us = True, navigator.time_us
         navigator.port("drive_target").put(target)
         navigator.iterate()
