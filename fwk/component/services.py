@@ -158,6 +158,11 @@ class Serves(Generic[Q, R]):
         self.open.append(self._waiting.popleft())
         return self.open[-1]
 
+    @property
+    def waiting(self) -> tuple[Request[Q, R], ...]:
+        """Requests in the queue, in their order; one that is rejected here leaves the queue."""
+        return tuple(self._waiting)
+
     def __len__(self) -> int:
         """Number of requests in the queue."""
         return len(self._waiting)
@@ -198,6 +203,7 @@ class Serves(Generic[Q, R]):
     def _finish(self, request: Request[Q, R]) -> None:
         """Releases the request's place in the queue."""
         self._unfinished[request.sender] -= 1
+        self._waiting = deque(each for each in self._waiting if each is not request)
         self.open = [each for each in self.open if each is not request]
 
     def _report_missing(self, source: RequestReader[Q], sequence: int) -> None:

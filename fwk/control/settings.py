@@ -2,7 +2,7 @@
 
 import dataclasses
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
@@ -17,7 +17,7 @@ from fwk.control.requests import RequestError
 from fwk.model.errors import PlanError, Problems
 from fwk.model.plan import ComponentPlan, Plan
 from fwk.model.selection import matches, nearest
-from fwk.plan.files.overrides import PLACE, overrides
+from fwk.plan.files.overrides import PLACE, SHARED, overrides
 from fwk.plan.files.settings import effective
 from fwk.plan.files.source import Node
 
@@ -79,6 +79,8 @@ class RunSettings:
         for text in sets:
             if "." not in text.partition("=")[0]:
                 problems.add("", "", f"'{text}' is not NAME.SETTING=VALUE; values of the run as a whole cannot change")
+            elif text.startswith(f"{SHARED}."):
+                problems.add("", "", f"'{text}' changes nothing; name the components that have it: NAME.SETTING=VALUE")
         typed = overrides([text for text in sets if "." in text.partition("=")[0]], problems)
         changes = typed.at("config").value if typed.child("config") else {}
         found = [
@@ -117,6 +119,12 @@ class RunSettings:
         now = _node(self._asked.get(component.index, self._values[component.index]))
         values, origins = effective(kind, [now, *layers], "", lambda _, text: texts.append(text))
         said = {name: _value(values, name) for name, origin in origins.items() if origin != _NOW}
+        empty = dict.fromkeys(path for layer in layers for path in _empty_mappings(layer)) if not texts else {}
+        texts += [
+            f"'{path}={{}}' changes nothing, because its keys keep their values; write {path}.{next(iter(keys))}=VALUE"
+            for path in empty
+            if isinstance(keys := _value(values, path), dict) and keys
+        ]
         texts += [
             f"'{name}' cannot change during a run; set it in the launch file and restart the run"
             for name, value in said.items()
@@ -154,6 +162,15 @@ def _means(pattern: str, row: dict[str, Any]) -> bool:
     component, _, setting = pattern.partition(".")
     own = str(row["setting"])
     return matches(row["component"], component) and (not setting or own == setting or own.startswith(f"{setting}."))
+
+
+def _empty_mappings(node: Node, path: str = "") -> Iterator[str]:
+    """Yields the dotted names of all settings that are {}."""
+    if node.value == {}:
+        yield path
+    elif isinstance(node.value, dict):
+        for key, below in node.value.items():
+            yield from _empty_mappings(below, f"{path}.{key}" if path else key)
 
 
 def _layers(name: str, changes: dict[str, Node]) -> list[Node]:

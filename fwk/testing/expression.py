@@ -2,8 +2,10 @@
 
 import ast
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any
 
+from fwk.model.errors import hint
 from fwk.testing.bounded import BOUNDED, Bounding
 
 Words = Mapping[str, Callable[..., Any]]
@@ -55,7 +57,7 @@ class Expression:
         """Checks the text.
 
         Raises:
-            ExpressionError: the text is not a condition, or it calls an unknown word.
+            ExpressionError: the text is not a condition, or it has an unknown word.
         """
         self.text = text
         self._words = {**_PLAIN, **(words or {})}
@@ -67,13 +69,23 @@ class Expression:
             raise ExpressionError(f"'{text:.60}': cannot be read; write it shorter ({error})") from error
         for node in ast.walk(tree):
             self._check(node)
-        called = {node.func for node in ast.walk(tree) if isinstance(node, ast.Call)}
-        names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and node not in called}
-        self._namespaces = sorted(names - set(self._words))
-        self._code = compile(Bounding().visit(tree), "<condition>", "eval")
+        names = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and node.id not in self._words]
+        self._namespaces = sorted({node.id for node in names})
+        used = _namespaces_in(tree)
+        for node in names:
+            if node not in used:
+                raise ExpressionError(f"'{text}': there is no '{node.id}'; {hint(node.id, self._words)}")
+        self._names_known = False
+        try:
+            self._tree = Bounding().visit(tree)
+            self._code = compile(self._tree, "<condition>", "eval")
+        except (RecursionError, MemoryError) as error:
+            raise ExpressionError(f"'{text:.60}': cannot be read; write it shorter ({error})") from error
 
     def value(self, newest: Callable[[str], Any]) -> Any:
         """Returns the value; `newest` gives the newest message of a channel.
+
+        The first call looks for unknown names everywhere, also where `and` or `or` need not look.
 
         Raises:
             ExpressionError: a channel or a field does not exist, or the values do not fit together.
@@ -82,9 +94,12 @@ class Expression:
         known |= {name: Namespace(name, newest) for name in self._namespaces}
         known |= BOUNDED
         try:
+            if not self._names_known:
+                _check_names(self._tree.body, known)
+                self._names_known = True
             return eval(self._code, {"__builtins__": {}}, known)
-        except (AttributeError, KeyError, IndexError, TypeError, ValueError, ArithmeticError) as error:
-            raise ExpressionError(f"'{self.text}': {type(error).__name__}: {error}") from error
+        except (AttributeError, KeyError, IndexError, TypeError, ValueError, ArithmeticError, RecursionError) as error:
+            raise ExpressionError(f"'{self.text}': {_said(error)}") from error
 
     def _check(self, node: ast.AST) -> None:
         if not isinstance(node, (*_ALLOWED, ast.Load)):
@@ -93,6 +108,34 @@ class Expression:
             raise ExpressionError(f"'{self.text}': '{node.attr}' begins with an underscore")
         if isinstance(node, ast.Call) and (not isinstance(node.func, ast.Name) or node.func.id not in self._words):
             raise ExpressionError(f"'{self.text}': calls only {', '.join(sorted(self._words))}")
+
+
+def _namespaces_in(tree: ast.AST) -> set[ast.expr]:
+    """Returns the nodes that stand for namespaces: before a dot, or as an argument of a word that is not plain."""
+    nodes = list(ast.walk(tree))
+    calls = [node for node in nodes if isinstance(node, ast.Call)]
+    arguments = (each for call in calls if getattr(call.func, "id", "") not in _PLAIN for each in call.args)
+    return {*(node.value for node in nodes if isinstance(node, ast.Attribute)), *arguments}
+
+
+def _check_names(part: ast.expr, known: Mapping[str, Any]) -> None:
+    """Evaluates all parts of a condition, the innermost first; passes over errors that other values may not cause."""
+    for inner in ast.iter_child_nodes(part):
+        if isinstance(inner, ast.expr):
+            _check_names(inner, known)
+    with suppress(IndexError, ValueError, ArithmeticError):
+        eval(compile(ast.Expression(part), "<condition>", "eval"), {"__builtins__": {}}, known)
+
+
+def _said(error: Exception) -> str:
+    if isinstance(error, AttributeError) and error.name:
+        known = [name for name in dir(error.obj) if name.islower() and not name.startswith("_")]
+        fields = [name for name in known if not callable(getattr(error.obj, name))]
+        return f"{type(error.obj).__name__} has no '{error.name}'; {hint(error.name, fields)}"
+    if isinstance(error, KeyError) and error.args:
+        text = str(error.args[0])
+        return text if " " in text else f"there is no '{text}'"
+    return str(error)
 
 
 def _bound(word: Callable[..., Any], newest: Callable[[str], Any]) -> Any:

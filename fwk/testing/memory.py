@@ -19,6 +19,7 @@ from fwk.gateway.ingress import WRITER
 from fwk.host.memory_host import MemoryHost
 from fwk.lcm import envelope, messages
 from fwk.model.channel_table import change_message
+from fwk.model.errors import hint
 from fwk.model.names import LINES
 from fwk.model.plan import NOBODY, ChannelPlan, ComponentPlan, Plan
 from fwk.model.requests import channel_request_of
@@ -150,7 +151,13 @@ class MemorySystem:
         self._publish([(channel, stamp(message, self.ticks + 1, number, self.now_us, header_t.OUTSIDE, WRITER))])
 
     def newest(self, channel: str) -> Any:
-        """Returns the newest message of a channel, decoded; the type's zero before the first."""
+        """Returns the newest message of a channel, decoded; the type's zero before the first.
+
+        Raises:
+            KeyError: there is no such channel; the text names the nearest.
+        """
+        if channel not in self.sent:
+            raise KeyError(f"no channel '{channel}'; {hint(channel, self.sent)}")
         sent = self.sent[channel]
         return envelope.decode(self._types[channel], sent[-1], channel) if sent else self._types[channel]()
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, PositiveFloat
+from pydantic import AllowInfNan, BaseModel, ConfigDict, PositiveFloat
 
 from fwk.testing.expression import Expression, Words
 
@@ -22,7 +22,7 @@ class Expectations(BaseModel):
     """Each must hold in every tick."""
     at_end: list[str] = []
     """Each must hold in the last tick."""
-    time_s: PositiveFloat = 10.0
+    time_s: Annotated[PositiveFloat, AllowInfNan(False)] = 10.0
     """Limit of the logical time. Without `always` and `at_end` a scenario ends once all the rest has happened."""
 
 

@@ -3,6 +3,7 @@
 from lcmtypes.soccer import skill_command_t
 from procs.behaviour.ballistics import hardest_kick_m_s, kick_speed_m_s
 from procs.behaviour.bodies import Bodies
+from procs.behaviour.obstacles import is_in_goal, reachable
 from procs.model.field import Field, Point
 from procs.model.geometry import clamp, plausible
 
@@ -20,6 +21,8 @@ def accepted_place(skill: str, place: Point, field: Field, bodies: Bodies) -> Po
     if skill not in (*_DRIVES, *_AT_PLACE):
         return place
     x_m, y_m = _furthest_m(skill, field, bodies)
+    if skill == "goto" and is_in_goal(place, field):
+        place = reachable(place, field, bodies)
     return Point(clamp(place.x_m, -x_m, x_m), clamp(place.y_m, -y_m, y_m))
 
 
@@ -27,6 +30,8 @@ def mistake(command: skill_command_t, field: Field, bodies: Bodies) -> str:
     """Returns why the command of a known skill cannot be carried out, and what could be; empty if it can."""
     if not plausible(command.x_m, command.y_m, command.heading_rad, command.speed_m_s):
         return "the target is not a place on the field, or the speed is not a number"
+    if command.skill == "goto" and (reason := _in_goal(Point(command.x_m, command.y_m), field, bodies)):
+        return reason
     place = accepted_place(command.skill, Point(command.x_m, command.y_m), field, bodies)
     furthest_m = _furthest_m(command.skill, field, bodies)
     wanted = (("x_m", command.x_m, place.x_m, furthest_m[0]), ("y_m", command.y_m, place.y_m, furthest_m[1]))
@@ -41,6 +46,15 @@ def mistake(command: skill_command_t, field: Field, bodies: Bodies) -> str:
         fastest_m_s = hardest_m_s * command.speed_m_s / kick_m_s
         return f"speed_m_s is {command.speed_m_s:g}; after the hardest kick the ball rolls at {fastest_m_s:.1f} at most"
     return ""
+
+
+def _in_goal(place: Point, field: Field, bodies: Bodies) -> str:
+    """Returns that a place is in or behind a goal, where no robot stands, and what would do; empty if it is not."""
+    if not is_in_goal(place, field) or abs(place.x_m) > _furthest_m("goto", field, bodies)[0]:
+        return ""
+    where = "in" if abs(place.x_m) < field.half_length_m + field.goal_depth_m else "behind"
+    limit_m = reachable(Point(field.half_length_m, place.y_m), field, bodies).x_m
+    return f"({place.x_m:g}, {place.y_m:g}) is {where} a goal; at that y_m x_m can be from {-limit_m:g} to {limit_m:g}"
 
 
 def _furthest_m(skill: str, field: Field, bodies: Bodies) -> tuple[float, float]:

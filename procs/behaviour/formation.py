@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.path import Disc, find_way
+from procs.behaviour.shortest import first_turn
 from procs.behaviour.view import Robot
 from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import ahead, bearing_rad, between, clamp
@@ -21,11 +22,12 @@ _APART_M = 1.0
 """Least distance of two robots at a set piece."""
 _TURNS_RAD = [sign * 0.15 * step for step in range(1, 21) for sign in (1, -1)]
 _LENGTH_M, _WIDTH_M = 22.0, 14.0
-"""Field for which the numbers of `places` are; they become larger or smaller with the field."""
+"""Field for which the distances of formations are; they become larger or smaller with the field."""
 _BACK_M, _STOPPER_M = 0.75, 0.95  # before the own penalty area: the furthest place back, and the nearest to the goal
 _SHOOTER_M, _SHOOTER_Y_M = 1.75, 2.5  # a mate so far before the opponents' penalty area, and so far aside, can shoot
 _BESIDE_FIELD_M = 0.3  # a robot at the side of the field may stand so far outside
 _BODIES_M = 0.6  # least distance of the middles of two robots
+_PASSED_M = 0.7  # from the middle of a robot that is passed
 _STEP_M = 1.5  # far enough ahead that the robot does not brake
 _SHOT_M, _BESIDE_SHOT_M = 8.0, 1.2
 """Distance from which a mate with the ball shoots, and distance of the others from the way to the goal's middle."""
@@ -39,7 +41,7 @@ def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
     `ours`: the team has the ball or will have it sooner; the supporter then offers itself ahead of the ball,
     on its flank: -1 or 1.
     """
-    goal, along, across = field.goal_centre(-1.0), field.length_m / _LENGTH_M, field.width_m / _WIDTH_M
+    goal, (along, across) = field.goal_centre(-1.0), scale(field)
     back_m = _before_area_m(field, _BACK_M)
     shooter_m, shooter_aside_m = _before_area_m(field, _SHOOTER_M), _SHOOTER_Y_M * across
     if ours:
@@ -66,6 +68,11 @@ def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
     y_m = clamp(ball.y_m - flank * (2.0 * across), -aside_m, aside_m)
     spare = Point(clamp(ball.x_m - 3.0 * along, -back_m, 2.0 * along), y_m)
     return [supporter, stopper, sweeper, spare]
+
+
+def scale(field: Field) -> tuple[float, float]:
+    """Returns how many times as long and as wide as the usual field a field is."""
+    return field.length_m / _LENGTH_M, field.width_m / _WIDTH_M
 
 
 def _before_area_m(field: Field, distance_m: float) -> float:
@@ -153,15 +160,31 @@ def next_step(own: Point, place: Point, game: Game, field: Field, others: Iterab
     """Returns the place, or a place on a way there that keeps the distance to the ball of a set piece.
 
     A robot that is too near to the ball goes to the nearest place at the distance that the arena, the areas and the
-    other robots leave free.
+    other robots leave free. At a kick-off a robot in the wrong half takes the shortest way around all robots.
     """
     if game.free_play:
         return place
     circle = Disc(game.spot, _keep_off_m(game) - 0.1)
     if math.dist(own, game.spot) < circle.radius_m:
         return _way_out(own, game, field, circle.radius_m + 0.1, [other.place for other in others])
+    if game.state is State.KICK_OFF and own.x_m > 0.0:
+        return _way_home(own, place, circle, field, [other.place for other in others])
     way = find_way(own, place, [circle])
     return place if way.length_m <= math.dist(own, place) else ahead(own, way.direction_rad, min(way.length_m, _STEP_M))
+
+
+def _way_home(own: Point, place: Point, circle: Disc, field: Field, others: Sequence[Point]) -> Point:
+    """Returns the next place on the shortest way out of the wrong half, around the circle and the robots at it.
+
+    The freest tangent of the circle does not do: where a robot closes it, the detour leads into the circle, and out.
+    """
+
+    def possible(turn: Point) -> bool:
+        return field.in_field(*turn, _BESIDE_FIELD_M)
+
+    robots = [Disc(other, _PASSED_M) for other in others]
+    turn = first_turn(own, place, [circle, *robots], possible) or first_turn(own, place, [circle], possible) or place
+    return turn if turn == place else ahead(own, bearing_rad(own, turn), _STEP_M)
 
 
 def _way_out(own: Point, game: Game, field: Field, distance_m: float, taken: Sequence[Point]) -> Point:

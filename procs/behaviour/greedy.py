@@ -12,12 +12,13 @@ from procs.model.geometry import bearing_rad
 
 _KEEPER = 1
 _TAKER = 2
-_SHOT_RANGE_M = 8.0
 _TOUCHED_M = 0.5  # a robot this near to the ball has touched it
 _CLEAR_M = 0.5  # distance from the own penalty area
-_ASIDE_M = 0.8  # distance along y between those robots
-_MIDDLE = 3.5  # mean of their numbers
+_MIDDLE = 3.5  # mean of the numbers of the robots that do not have the ball
+# On the usual field; on others they are larger or smaller with it:
+_SHOT_RANGE_M = 8.0
 _BEHIND_M = 1.5  # distance along x between the robots that do not have the ball
+_ASIDE_M = 0.8  # distance along y between those robots
 
 
 def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str, Order]:
@@ -45,9 +46,10 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
     nearest = min(free, key=lambda robot: (math.dist(robot.place, ball), robot.name), default=None)
     if view.ball.known and nearest is view.own:
         return ATTACKER, Order("get_ball", ball, bearing_rad(ball, field.goal_centre(1.0)), "chase")
+    along, across = formation.scale(field)
     least_m = field.penalty_area_depth_m + _CLEAR_M - field.half_length_m
-    aside_m = _ASIDE_M * (number - _MIDDLE)
-    place = Point(max(ball.x_m - _BEHIND_M * number, least_m), 0.5 * ball.y_m + aside_m)
+    aside_m = _ASIDE_M * across * (number - _MIDDLE)
+    place = Point(max(ball.x_m - _BEHIND_M * along * number, least_m), 0.5 * ball.y_m + aside_m)
     return PASSER if taken else DEFENDER, Order("goto", place, bearing_rad(place, ball), "follow")
 
 
@@ -55,7 +57,8 @@ def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Fie
     goal = field.goal_centre(1.0)
     goal_rad = bearing_rad(game.spot, goal)
     if not takes:
-        place = Point(game.spot.x_m - _BEHIND_M * view.own.number, 0.5 * game.spot.y_m)
+        along, _ = formation.scale(field)
+        place = Point(game.spot.x_m - _BEHIND_M * along * view.own.number, 0.5 * game.spot.y_m)
         step = formation.next_step(view.own.place, formation.allowed(place, game, field), game, field, view.others)
         return DEFENDER, Order("goto", step, bearing_rad(step, game.spot), "keep distance")
     if game.stopped:
@@ -66,8 +69,8 @@ def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Fie
 
 
 def _play(view: View, field: Field) -> Order:
-    goal = field.goal_centre(1.0)
-    if math.dist(view.own.place, goal) < _SHOT_RANGE_M:
+    goal, range_m = field.goal_centre(1.0), _SHOT_RANGE_M * formation.scale(field)[0]
+    if math.dist(view.own.place, goal) < range_m:
         return Order("shoot", goal, bearing_rad(view.own.place, goal), "shoot")
-    target = Point(field.half_length_m - _SHOT_RANGE_M / 2, 0.0)
+    target = Point(field.half_length_m - range_m / 2, 0.0)
     return Order("dribble", target, bearing_rad(view.own.place, goal), "dribble")

@@ -8,11 +8,10 @@ from lcmtypes.robot import kicker_state_t, motor_command_t, odometry_t
 from lcmtypes.soccer import drive_target_t, navigator_state_t, world_model_t
 from procs.behaviour import motion, obstacles
 from procs.behaviour.bodies import Bodies
-from procs.behaviour.goals import Goals
-from procs.behaviour.identity import number_of_mate, number_of_player
+from procs.behaviour.identity import number_of_player
 from procs.behaviour.motion import STANDSTILL, Limits, Pose, Velocity
 from procs.behaviour.path import Way, find_way
-from procs.behaviour.roles import ABSENT
+from procs.behaviour.permitted import Permitted, is_field_player
 from procs.behaviour.velocity_obstacles import safe_velocity
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
@@ -70,7 +69,8 @@ class Navigator(Component):
 
     def config_changed(self) -> None:
         self._bodies = Bodies.of(self.config.robot, self.config.ball)
-        self._goals = Goals(self.config.field, self._bodies)
+        self._permitted = Permitted(self.config.field, self._bodies)
+        self._goals = self._permitted.goals
 
     def loop(self) -> None:
         target, model, state = self.drive_target.value, self.world_model.value, self.navigator_state.value
@@ -119,11 +119,9 @@ class Navigator(Component):
     def _drive(self, target: drive_target_t, model: world_model_t) -> None:
         config, state = self.config, self.navigator_state.value
         pose = self._pose(model)
-        place = obstacles.reachable(Point(target.x_m, target.y_m), config.field, self._bodies)
+        barred = is_field_player(model, self._robot, config.players)
+        place = self._permitted.nearest(Point(target.x_m, target.y_m), barred)
         around = obstacles.discs(model, config.field, self._bodies, target.avoid_robots, target.avoid_ball)
-        barred = self._is_field_player(model)
-        if barred:
-            place = self._goals.outside_areas(place)
         turn = self._goals.turning_place(pose.place, place, barred, around)
         possible = partial(self._possible, pose.place, barred)
         way = find_way(pose.place, turn, around, self._direction_rad, possible)
@@ -143,15 +141,6 @@ class Navigator(Component):
     def _possible(self, start: Point, barred: bool, end: Point) -> bool:
         """Returns whether a detour may turn at its end."""
         return obstacles.inside_walls(end, self.config.field, self._bodies) and self._goals.is_open(start, end, barred)
-
-    def _is_field_player(self, model: world_model_t) -> bool:
-        """Returns whether a mate keeps the goal: the lowest number of those on the field.
-
-        A robot that is alone may go everywhere.
-        """
-        players = self.config.players
-        number = number_of_player(self._robot, players)
-        return any(mate.role != ABSENT and number_of_mate(mate, players) < number for mate in model.mates)
 
     def _give_way(self, wanted: Velocity, place: Point, model: world_model_t) -> Velocity:
         players = self.config.players

@@ -22,6 +22,7 @@ _NEAR_M = 6.0  # further obstacles do not matter yet
 _PASSING_M = 0.1  # room beside a robot that is passed ...
 _UNSURE_M = 0.15  # ... and at most so much more for the deviation of its place
 _OFF_WALL_M = 0.1  # room between a robot at its target and the wall
+_OFF_GOAL_M = 0.5  # beside the mouth of a goal, robots keep before its line, too
 _AT_WALL_M = 0.05  # a robot at the wall may be believed so far inside it
 _DRIVES_M_S = 0.3  # a slower mate plays the ball or stays at its place, and does not give way
 
@@ -50,9 +51,18 @@ def reachable(place: Point, field: Field, bodies: Bodies) -> Point:
     off_m = bodies.robot_radius_m + _OFF_WALL_M
     x_m = clamp(place.x_m, -field.half_length_m - field.border_m + off_m, field.half_length_m + field.border_m - off_m)
     y_m = clamp(place.y_m, -field.half_width_m - field.border_m + off_m, field.half_width_m + field.border_m - off_m)
-    if abs(y_m) < field.goal_width_m / 2 + 0.5:
+    if _is_before_goal(y_m, field):
         x_m = clamp(x_m, -field.half_length_m + 0.1, field.half_length_m - 0.1)
     return Point(x_m, y_m)
+
+
+def is_in_goal(place: Point, field: Field) -> bool:
+    """Returns whether a place is in a goal, beside its net or behind it; robots stay before the goal line there."""
+    return abs(place.x_m) > field.half_length_m and _is_before_goal(place.y_m, field)
+
+
+def _is_before_goal(y_m: float, field: Field) -> bool:
+    return abs(y_m) < field.goal_width_m / 2 + _OFF_GOAL_M
 
 
 def inside_walls(place: Point, field: Field, bodies: Bodies) -> bool:

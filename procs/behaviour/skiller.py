@@ -1,5 +1,7 @@
 """Carries out skills as commands: where to drive, when to handle the ball and when to kick."""
 
+from functools import partial
+
 from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Request, RequestState, Serves, Writes, channel
 from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_state_t, motor_command_t
 from lcmtypes.soccer import (
@@ -15,6 +17,7 @@ from procs.behaviour.bodies import Bodies
 from procs.behaviour.commands import mistake
 from procs.behaviour.game import Whose, frame_of, game_of
 from procs.behaviour.identity import team_of_player
+from procs.behaviour.permitted import Permitted, is_field_player
 from procs.behaviour.skills.book import SKILLS, Machine
 from procs.behaviour.skills.skill import Blind, Drive, Obstacle, Scene, Sight, Status, Step
 from procs.behaviour.view import view_of
@@ -77,6 +80,7 @@ class Skiller(Component):
 
     def config_changed(self) -> None:
         self._bodies = Bodies.of(self.config.robot, self.config.ball)
+        self._permitted = Permitted(self.config.field, self._bodies)
 
     @property
     def _team(self) -> Team:
@@ -133,6 +137,7 @@ class Skiller(Component):
             field=self.config.field,
             game=game,
             sight=None if view.localized else self._sight(),
+            permitted=partial(self._permitted.nearest, field_player=is_field_player(model, self._robot, players)),
         )
 
     def _sight(self) -> Sight | None:

@@ -35,9 +35,9 @@ class KickerConfig(Config):
 class Kicker(Component):
     """State of the kicker when sensors are read, its drive when actuators act.
 
-    A kick waits for ball and charge until it expires. It is accepted when the hardware is told to kick, and done
-    when the hardware has kicked. Kicks that this driver did not ask for do not count, as those before it
-    was restarted: their speed is unknown.
+    A kick waits for ball and charge until it expires; one without a speed is refused at once. It is accepted when the
+    hardware is told to kick, and done when the hardware has kicked. Kicks that this driver did not ask for do not
+    count, as those before it was restarted: their speed is unknown.
     """
 
     stage = ("sensor_acquire", "act_exec")
@@ -91,9 +91,10 @@ class Kicker(Component):
             self._fail_open("the hardware has not kicked")
 
     def _act(self) -> None:
+        self._refuse_impossible()
         sensor, drive = self.kicker_sensor.value, self.kicker_drive.value
         drive.kick_id, drive.kick_m_s, drive.elevation_rad = sensor.kick_id, 0.0, 0.0
-        if sensor.ball_held and sensor.charged and (request := self._next_kick()):
+        if sensor.ball_held and sensor.charged and (request := self.kick.take()):
             self._fail_open("a newer kick replaced it", besides=request)
             request.accept()
             drive.kick_id = sensor.kick_id % _KICKS_MAX + 1
@@ -104,12 +105,10 @@ class Kicker(Component):
         drive.dribble = self._is_fresh() and self.dribble_command.value.on
         self.kicker_drive.write()
 
-    def _next_kick(self) -> Request[kick_command_t] | None:
-        for request in self.kick:
-            if request.value.speed_m_s > 0:
-                return request
-            request.reject(f"speed_m_s is {request.value.speed_m_s}; it should be above 0")
-        return None
+    def _refuse_impossible(self) -> None:
+        for request in self.kick.waiting:
+            if not request.value.speed_m_s > 0:
+                request.reject(f"speed_m_s is {request.value.speed_m_s}; it should be above 0")
 
     def _fail_open(self, reason: str, besides: Request[kick_command_t] | None = None) -> None:
         for request in self.kick.open:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from lcmtypes.soccer import game_event_t, game_state_t
 from procs.model.robot import number_of, team_of
 from procs.refbox.protocol import Command
+from procs.referee.reasons import OFF_FIELD, PARK, RESET
 
 TEAMS = {game_state_t.TEAM_CYAN: "cyan", game_state_t.TEAM_MAGENTA: "magenta"}
 _SET_PIECES = {
@@ -22,6 +23,8 @@ _HALVES = {1: "FIRST_HALF", 2: "SECOND_HALF", 3: "FIRST_HALF_OVERTIME", 4: "SECO
 _BREAKS = {game_state_t.HALF_TIME: "HALF_TIME", game_state_t.FROZEN: "END_GAME"}
 _CARDS = {game_event_t.YELLOW: "YELLOW_CARD", game_event_t.DOUBLE_YELLOW: "DOUBLE_YELLOW", game_event_t.RED: "RED_CARD"}
 
+_AWAY = (game_event_t.DOUBLE_YELLOW, game_event_t.RED)
+
 
 def news(
     before: game_state_t | None,
@@ -33,12 +36,12 @@ def news(
     """Returns the commands between two states, in their order; without a state before, those that lead to this one.
 
     `events` is the history of the match; `number` and `team` give those of the robot with a namespace. A robot that
-    leaves the field without a card is under repair: the states do not tell repair, substitution and parking apart.
+    is off the field for no decision in it is under repair.
     """
     if before is None:
         commands = _half(now) + _robots(game_state_t(), now, events, number, team)
         return commands + _break(now) + _stopped(now) + ([] if now.stopped else [Command("START")])
-    if now.decisions < before.decisions:
+    if _is_new_match(before, now, events):
         return [Command("RESET"), *news(None, now, events, number, team)]
     commands = _robots(before, now, events, number, team)
     if now.state != before.state and now.state in _BREAKS:
@@ -63,11 +66,37 @@ def _robots(
     number: Callable[[str], int],
     team: Callable[[str], str],
 ) -> list[Command]:
-    """Returns the goals, the cards and the repairs between two states."""
+    """Returns the goals, the cards, and who left the field, between two states."""
     newer = events[before.decisions : now.decisions]
-    known = {*before.sent_off, *(event.robot for event in newer if event.card in _CARDS)}
-    repairs = [Command("REPAIR", team(robot), number(robot)) for robot in now.sent_off if robot not in known]
-    return _scores(before, now) + _cards(newer, number) + repairs
+    causes = {robot: _cause(robot, newer) for robot in now.sent_off}
+    off = [
+        Command(event.reason.upper(), team(event.robot), number(event.robot)) if event.robot else Command("PARK")
+        for event in newer
+        if event.reason in OFF_FIELD and any(event is cause for cause in causes.values())
+    ]
+    repairs = [
+        Command("REPAIR", team(robot), number(robot))
+        for robot, cause in causes.items()
+        if cause is None and robot not in before.sent_off
+    ]
+    return _scores(before, now) + _cards(newer, number) + off + repairs
+
+
+def _cause(robot: str, events: Sequence[game_event_t]) -> game_event_t | None:
+    """Returns the newest decision that took a robot off the field."""
+    for event in reversed(events):
+        if event.reason == PARK or (event.robot == robot and (event.card in _AWAY or event.reason in OFF_FIELD)):
+            return event
+    return None
+
+
+def _is_new_match(before: game_state_t, now: game_state_t, events: Sequence[game_event_t]) -> bool:
+    """Returns whether the match has begun anew: its history has, or time has gone back without a newer whistle."""
+    newer = events[before.decisions : now.decisions]
+    if now.decisions < before.decisions or any(event.reason == RESET for event in newer):
+        return True
+    went_back = now.half == 1 and (before.half > 1 or now.time_in_half_s < before.time_in_half_s)
+    return went_back and all(event.goal or event.card or event.reason in OFF_FIELD for event in newer)
 
 
 def _break(now: game_state_t) -> list[Command]:

@@ -92,7 +92,7 @@ def _robot(whistle: Whistle, sight: Sight, name: str, namespace: str, names: Nam
     if name in _CARDS:
         whistle.card(robot, _CARDS[name])
     else:
-        whistle.cards.take_out(robot, whistle.rules.repair_s)
+        whistle.take_out(robot, name)
     return ""
 
 
@@ -105,8 +105,7 @@ def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
         case "drop_ball":
             whistle.interrupt(restarts.dropped_ball(whistle.place(sight.ball), whistle.rules.field), "by hand")
         case "park":
-            for each in sight.robots:
-                whistle.cards.take_out(each, whistle.rules.repair_s)
+            whistle.park(sight.robots)
         case "half_time":
             whistle.end_half()
         case "end_game":

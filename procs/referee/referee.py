@@ -15,6 +15,7 @@ from procs.model.field import Point
 from procs.referee.ends import Team
 from procs.referee.names import Names
 from procs.referee.orders import carry_out
+from procs.referee.reasons import OFF_FIELD
 from procs.referee.restarts import State
 from procs.referee.rules import Rules
 from procs.referee.sight import Sight
@@ -116,7 +117,7 @@ class Referee(Component):
         event.goal, event.card, event.state, event.team = call.goal, call.card, call.state, call.team
         event.half, event.time_in_half_s = whistle.half, whistle.time_in_half_s
         event.robot, event.reason = self._names.outside(call.robot), call.reason
-        if call.state not in (State.HALF_TIME, State.FROZEN):
+        if call.card or call.reason or call.state not in (State.HALF_TIME, State.FROZEN):
             self.match_history.value.events.append(event)
             self._has_grown = True
         if not call.goal:
@@ -128,6 +129,8 @@ class Referee(Component):
         when = f"{whistle.time_in_half_s:.1f} s into half {whistle.half}"
         if call.card:
             return f"{call.card.name.lower().replace('_', ' ')} card for {self._names.outside(call.robot)}, {when}"
+        if call.reason in OFF_FIELD:
+            return f"{call.reason}{f' of {self._names.outside(call.robot)}' if call.robot else ''}, {when}"
         what = "final whistle" if call.state is State.FROZEN else call.state.name.lower().replace("_", " ")
         whose = f" for {call.team.name.lower()}" if call.team else ""
         why = f" ({', '.join(filter(None, (call.reason, self._names.outside(call.robot))))})" if call.reason else ""

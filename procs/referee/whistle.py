@@ -5,6 +5,7 @@ a ball out of the field, a foul or a deadlock interrupts it.
 """
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from procs.model.field import Point
@@ -16,6 +17,7 @@ from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.fouls.pushing import collision
 from procs.referee.fouls.set_piece import breach
 from procs.referee.positions import misplaced
+from procs.referee.reasons import PARK, RESET
 from procs.referee.restarts import Restart, State
 from procs.referee.rules import Rules
 from procs.referee.shootout import Shootout
@@ -29,14 +31,14 @@ _REPEATS = 2  # of a set piece; then the game goes on in spite of a breach
 
 
 class Call(NamedTuple):
-    """Decision of the referee, for the record."""
+    """Decision of the referee, for the record: a goal, a card, a robot off the field, or else a whistle."""
 
     state: State
     team: Team
     goal: bool = False
-    """By `team`; otherwise a whistle for the set piece `state`."""
+    """By `team`."""
     robot: str = ""
-    """That committed a foul, or that got the card."""
+    """That committed a foul, got the card, or leaves the field."""
     card: Card = Card.NONE
     reason: str = ""
 
@@ -113,15 +115,15 @@ class Whistle:
         """Begins the match anew: no goals, no cards, the kick-off of the first half."""
         self.score = {Team.CYAN: 0, Team.MAGENTA: 0}
         self.cards = Cards()
-        self.begin_half(halves.FIRST)
+        self.begin_half(halves.FIRST, RESET)
 
-    def begin_half(self, half: int) -> None:
+    def begin_half(self, half: int, reason: str = "") -> None:
         """Begins a half with its kick-off, or the penalties with the first of them."""
         ends = halves.ends_of(half, self.rules)
         self._changing_ends, self.ends = ends != self.ends, ends
         self.half, self.time_in_half_s, self._left_at = half, 0.0, None
         self.shootout = Shootout(self.rules.penalties) if half == halves.PENALTIES else None
-        self.interrupt(self._next_penalty() if self.shootout else restarts.kick_off(halves.kicks_off(half)))
+        self.interrupt(self._next_penalty() if self.shootout else restarts.kick_off(halves.kicks_off(half)), reason)
 
     def stop(self, ball: Point) -> None:
         """Stops the game until it is started by hand; from play it goes on with a dropped ball where the ball is."""
@@ -189,6 +191,17 @@ class Whistle:
         """Shows a card."""
         shown = self.cards.show(robot, card, self.rules)
         self.calls.append(Call(self.state, team_number(robot), robot=robot, card=shown))
+
+    def take_out(self, robot: str, reason: str) -> None:
+        """Takes a robot off the field without a card."""
+        self.cards.take_out(robot, self.rules.repair_s)
+        self.calls.append(Call(self.state, team_number(robot), robot=robot, reason=reason))
+
+    def park(self, robots: Iterable[str]) -> None:
+        """Takes all robots off the field."""
+        for robot in robots:
+            self.cards.take_out(robot, self.rules.repair_s)
+        self.calls.append(Call(self.state, Team.NONE, reason=PARK))
 
     def _misplaced(self, sight: Sight) -> list[str]:
         """Returns the robots that are misplaced: distances are those to the ball, which may lie beside the spot."""

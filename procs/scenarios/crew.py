@@ -1,8 +1,8 @@
 """Field crew of a scenario: sets robots and ball down, and gives the referee commands, each at its time."""
 
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, model_validator
+from pydantic import AllowInfNan, BaseModel, ConfigDict, Field, NonNegativeFloat, model_validator
 
 from fwk import Call, Calls, Clock, Component, Config, Logger, channel
 from lcmtypes.soccer import place_ball_t, place_robot_t, referee_command_t
@@ -16,7 +16,7 @@ class Action(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    at_s: NonNegativeFloat = 0.0
+    at_s: Annotated[NonNegativeFloat, AllowInfNan(False)] = 0.0
     """Logical time, from the beginning of the run."""
     place_ball: dict[str, float] | None = None
     """Fields of `place_ball_t`: `x_m`, `y_m`, `vx_m_s` and so on."""

@@ -1,7 +1,7 @@
 """Mistakes in scenario files, in words that say where they are and what would be right."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any
 
@@ -38,6 +38,8 @@ def field_mistakes(fields: Mapping[str, Any], message: Any) -> list[str]:
         fits = isinstance(value, (int, float)) if wanted is float else isinstance(value, wanted)
         if not fits or (isinstance(value, bool) and wanted is not bool):
             found.append(f"{name} is {value!r}; it should be a {'number' if wanted is float else wanted.__name__}")
+        elif wanted is float and not math.isfinite(value):
+            found.append(f"{name} is {value!r}; it should be a finite number")
     return found
 
 
@@ -66,9 +68,7 @@ def settings_mistakes(
     """Yields what is wrong with the settings of components; `configs` has the model of each component's settings."""
     for name, values in settings.items():
         if name not in configs:
-            near = get_close_matches(name, configs, 1)
-            right = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(configs)}"
-            yield f"settings: no component '{name}'; {right}"
+            yield f"settings: no component '{name}'; {right_name(name, configs)}"
             continue
         model = configs[name]
         if model is None:
@@ -79,6 +79,13 @@ def settings_mistakes(
             model.model_validate(values)
         except ValidationError as error:
             yield from texts_of(error, name, list(model.model_fields))
+
+
+def right_name(word: str, known: Iterable[str]) -> str:
+    """Returns what would be right in the place of an unknown word: the nearest known word, or all of them."""
+    names = list(known)
+    near = get_close_matches(word, names, 1)
+    return f"did you mean '{near[0]}'?" if near else f"there are {', '.join(names) or 'none'}"
 
 
 def _unknown(key: str, known: Sequence[str]) -> str:

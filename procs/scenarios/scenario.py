@@ -65,7 +65,7 @@ class Scenario(Expectations):
     """Robots that stand still."""
     places: dict[str, tuple[FiniteFloat, FiniteFloat, FiniteFloat]] = {}
     """Start of robots: x in m, y in m, heading in rad (world frame); others take their default place."""
-    ball: dict[str, float] = {}
+    ball: dict[str, FiniteFloat] = {}
     """Place and velocity of the ball once play has begun, as in `place_ball_t`; empty: the kick-off."""
     rules: dict[str, Any] = {}
     """Settings of the referee."""
@@ -137,7 +137,7 @@ def _unknown_in(scenario: Scenario) -> list[str]:
         try:
             Expression(text, WORDS).value(system.newest)
         except ExpressionError as error:
-            if isinstance(error.__cause__, (AttributeError, KeyError, OverflowError, TypeError)):
+            if isinstance(error.__cause__, (AttributeError, KeyError, OverflowError, RecursionError, TypeError)):
                 found.append(str(error))
     return found
 

@@ -7,10 +7,13 @@ from typing import Any
 from fwk.testing import reads_messages
 from lcmtypes.soccer import game_state_t
 from procs.model.field import Point
+from procs.scenarios.mistakes import right_name
 
 Newest = Callable[[str], Any]
 
-_STATES = {name.lower(): value for name, value in vars(game_state_t).items() if name.isupper()}
+_NAMES = {name.lower(): value for name, value in vars(game_state_t).items() if name.isupper()}
+_TEAMS = {name.removeprefix("team_"): value for name, value in _NAMES.items() if name in ("team_cyan", "team_magenta")}
+_STATES = {name: value for name, value in _NAMES.items() if not name.startswith("team_")}
 
 
 @reads_messages
@@ -27,7 +30,11 @@ def _ball_speed(newest: Newest) -> float:
 
 @reads_messages
 def _distance(newest: Newest) -> Callable[[Any, Any], float]:
-    return lambda one, two: math.dist(_place(newest, one), _place(newest, two))
+    def distance(one: Any, two: Any) -> float:
+        """Returns the distance of two places in m."""
+        return math.dist(_place(newest, one), _place(newest, two))
+
+    return distance
 
 
 @reads_messages
@@ -35,9 +42,16 @@ def _state(newest: Newest) -> Callable[..., bool]:
     def state(name: str, team: str = "") -> bool:
         """Returns whether the game is in a state, for a team if one is named."""
         game = newest("world/game_state")
-        return game.state == _STATES[name] and (not team or game.state_team == _STATES[f"team_{team}"])
+        wanted, of = _named(_STATES, "state", name), _named(_TEAMS, "team", team) if team else game.state_team
+        return bool(game.state == wanted and game.state_team == of)
 
     return state
+
+
+def _named(table: Mapping[str, int], kind: str, name: str) -> int:
+    if name not in table:
+        raise KeyError(f"no {kind} '{name}'; {right_name(str(name), table)}")
+    return table[name]
 
 
 @reads_messages
@@ -49,10 +63,11 @@ def _place(newest: Newest, what: Any) -> Point:
     """Returns a place: a point, or that of a robot by its name."""
     if isinstance(what, tuple):
         return Point(*what)
-    for robot in newest("world/ground_truth").robots:
+    robots = newest("world/ground_truth").robots
+    for robot in robots:
         if robot.name == str(what):
             return Point(robot.x_m, robot.y_m)
-    raise KeyError(f"no robot '{what}'")
+    raise KeyError(f"no robot '{what}'; {right_name(str(what), [robot.name for robot in robots])}")
 
 
 @reads_messages

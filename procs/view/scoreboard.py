@@ -6,6 +6,7 @@ from typing import Any
 
 from lcmtypes.soccer import game_event_t, game_state_t, match_history_t
 from procs.model.field import field_of
+from procs.referee.reasons import OFF_FIELD
 from procs.view.field_drawing import field_drawing
 
 Newest = Callable[[str], Any]
@@ -88,7 +89,7 @@ def _events(history: match_history_t, half: int) -> list[str]:
         for event in history.events
         if event.goal and event.team in TEAMS
     ]
-    calls = [event for event in history.events if not event.goal and not event.card]
+    calls = [event for event in history.events if not event.goal and not event.card and event.reason not in OFF_FIELD]
     whistles = Counter(STATES.get(event.state, f"state {event.state}") for event in calls)
     counted = [f"{name} {count}" for name, count in sorted(whistles.items(), key=lambda item: (-item[1], item[0]))]
     cards = [f"{CARDS[event.card]} {event.robot}" for event in history.events if event.card in CARDS]

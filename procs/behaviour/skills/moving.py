@@ -29,7 +29,10 @@ class Stop(StateMachine):
 
 
 class _Place(StateMachine):
-    """Drives to a place and a heading, around the ball, and stays there."""
+    """Drives to a place and a heading, around the ball, and stays there.
+
+    It is there at the nearest place where the robot may stand.
+    """
 
     lasting = True
 
@@ -43,7 +46,7 @@ class _Place(StateMachine):
     def _there(self, scene: Scene) -> bool:
         own, (place, heading_rad) = scene.view.own, self._target(scene)
         turned_rad = abs(wrap_rad(own.heading_rad - heading_rad))
-        return math.dist(own.place, place) < _NEAR_M and turned_rad < _NEAR_RAD
+        return math.dist(own.place, scene.permitted(place)) < _NEAR_M and turned_rad < _NEAR_RAD
 
     def _away(self, scene: Scene) -> bool:
         return not self._there(scene)

@@ -1,6 +1,7 @@
 """Interface of the skills: once a tick a scene goes in and a step comes out; attack frame."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -33,6 +34,10 @@ class Sight(NamedTuple):
     """Points on white lines."""
 
 
+def _anywhere(place: Point) -> Point:
+    return place
+
+
 class Scene(NamedTuple):
     """Input of a skill."""
 
@@ -55,6 +60,8 @@ class Scene(NamedTuple):
     """State of the game."""
     sight: Sight | None = None
     """None: nothing was seen lately, or the robot knows its place."""
+    permitted: Callable[[Point], Point] = _anywhere
+    """Gives the place nearest to a target where the robot may stand, which is where a drive there ends."""
 
 
 class Drive(NamedTuple):

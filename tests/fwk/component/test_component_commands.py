@@ -76,6 +76,19 @@ def test_a_command_that_is_not_taken_waits_and_expires(parts: Any) -> None:
     assert bench.component.lift.expired == 1
 
 
+def test_waiting_command_can_be_rejected(parts: Any) -> None:
+    bench = Bench(parts.Lifter, at_once=1, ticks=9)
+    for height_m in (1.0, 2.0, 3.0):
+        bench.port("lift").put(height_m=height_m)
+    bench.iterate()
+    lift = bench.component.lift
+    assert [request.value.height_m for request in lift.waiting] == [2.0, 3.0]
+    lift.waiting[0].reject("never")
+    bench.iterate()
+    assert (2, answer_t.REJECTED, "never") in answers(bench)
+    assert [request.value.height_m for request in lift.waiting] == [3.0]
+
+
 def test_a_command_is_answered_once(parts: Any) -> None:
     bench = Bench(parts.Lifter)
     bench.port("lift").put(height_m=1.0)

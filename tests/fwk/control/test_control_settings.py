@@ -23,6 +23,7 @@ class TurnerConfig(Config):
     """Speed."""
     inner: Inner = Inner()
     names: list[str] = []
+    table: dict[str, int] = {}
     fixed: Inner = Field(Inner(), frozen=True)
 
 
@@ -124,6 +125,13 @@ def test_a_restarted_process_gets_the_changes_to_the_plan(settings: RunSettings)
         (["a/turnr.gain=1"], "no component 'a/turnr'; did you mean 'a/turner'?"),
         (["c/plain.gain=1"], "c/plain: no setting 'gain'; there is log_level"),
         (["speed=2"], "'speed=2' is not NAME.SETTING=VALUE"),
+        (["shared.gain=2"], "'shared.gain=2' changes nothing; name the components that have it: NAME.SETTING=VALUE"),
+        (
+            ["a/turner.inner={}"],
+            "a/turner: 'inner={}' changes nothing, because its keys keep their values; write inner.deep",
+        ),
+        (["a/turner.gain={}"], "a/turner: 'gain' is {}; it should be a valid number"),
+        (["a/turner.bla={}"], "a/turner: no setting 'bla'"),
         (["a/turner.gain"], "'a/turner.gain' is not a PATH=VALUE"),
         (["a/turner.gain=[1"], "'[1' is not a YAML value"),
         (["a/turner.gain=[1, " + "1" * 100], f"'[1, {'1' * 56}...' is not a YAML value"),
@@ -158,3 +166,11 @@ def test_a_config_is_updated_in_place() -> None:
     config._take_over(TurnerConfig(gain=2, inner=Inner(deep=5), names=["x"]))
     assert (config.gain, config.names, inner.deep) == (2.0, ["x"], 5)
     assert config.inner is inner
+
+
+def test_empty_table_can_be_set_while_it_is_empty(settings: RunSettings) -> None:
+    (new,) = settings.check(["a/turner.table={}"])
+    assert new.said == {"table": {}}
+    settings.take(settings.check(["a/turner.table.x=3"])[0], "test")
+    with pytest.raises(RequestError, match=re.escape("write table.x=VALUE")):
+        settings.check(["a/turner.table={}"])

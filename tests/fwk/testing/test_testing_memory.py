@@ -96,3 +96,9 @@ def test_a_component_that_raises_is_known_in_a_shared_host() -> None:
     system = MemorySystem({"a/conducts": Conducts, "a/plays": Fails}, hosting="single")
     with pytest.raises(ZeroDivisionError, match="no state"):
         system.tick()
+
+
+def test_unknown_channel_is_named_with_the_nearest() -> None:
+    system = MemorySystem({"a/plays": Plays, "a/conducts": Conducts})
+    with pytest.raises(KeyError, match=r"no channel 'a/stat'; did you mean 'a/state'\?"):
+        system.newest("a/stat")

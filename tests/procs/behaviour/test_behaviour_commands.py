@@ -20,6 +20,14 @@ def found(**command: Any) -> str:
     [
         ({"skill": "goto", "x_m": 99.0}, "x_m is 99; between the walls a robot's middle can be from -11.75 to 11.75"),
         ({"skill": "goto", "y_m": -7.9}, "y_m is -7.9; between the walls a robot's middle can be from -7.75 to 7.75"),
+        (
+            {"skill": "goto", "x_m": 11.2},
+            "(11.2, 0) is in a goal; at that y_m x_m can be from -10.9 to 10.9",
+        ),
+        (
+            {"skill": "goto", "x_m": -11.7, "y_m": 0.5},
+            "(-11.7, 0.5) is behind a goal; at that y_m x_m can be from -10.9 to 10.9",
+        ),
         ({"skill": "pass", "x_m": 12.5}, "x_m is 12.5; between the walls the place can be from -12 to 12"),
         ({"skill": "pass", "speed_m_s": -3.0}, "speed_m_s is -3; it should be above 0, or 0 for the skill's own speed"),
         ({"skill": "goto", "speed_m_s": -1.0}, "speed_m_s is -1; it should be above 0, or 0 for the skill's own speed"),
@@ -34,6 +42,11 @@ def test_pass_faster_than_the_kicker_can_is_a_mistake() -> None:
     fastest_m_s = float(reason.removesuffix(" at most").rpartition(" ")[2])
     assert 6.0 < fastest_m_s < 12.0
     assert not found(skill="pass", speed_m_s=fastest_m_s - 0.1)
+
+
+def test_goto_that_the_agent_orders_stays_before_a_goal() -> None:
+    assert accepted_place("goto", Point(11.3, 0.4), FIELD, USUAL) == (10.9, 0.4)
+    assert accepted_place("goto", Point(11.3, 2.0), FIELD, USUAL) == (11.3, 2.0)
 
 
 def test_place_that_is_only_aimed_at_may_lie_outside() -> None:

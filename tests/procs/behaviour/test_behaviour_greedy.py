@@ -32,6 +32,30 @@ def test_robot_with_the_ball_shoots_or_drives_to_the_goal(x_m: float, skill: str
     assert decide(seen, PLAY, True, FIELD)[1].skill == skill
 
 
+def small(point: Point) -> Point:
+    return Point(point.x_m / 2, point.y_m / 2)
+
+
+@pytest.mark.parametrize(("name", "x_m"), [("cyan2", -6.0), ("cyan4", -3.0), ("cyan5", 4.0)])
+def test_distances_shrink_with_the_field(name: str, x_m: float) -> None:
+    field, mates = Field(length_m=11.0, width_m=7.0, penalty_area_depth_m=1.0), (robot("cyan3", 1.9, 0.0),)
+    usual = view(robot(name, x_m, 1.0), ball(2.0, 0.4), mates)
+    half = view(robot(name, x_m / 2, 0.5), ball(1.0, 0.2), (robot("cyan3", 0.95, 0.0),))
+    assert decide(half, PLAY, False, field)[1].place == pytest.approx(small(decide(usual, PLAY, False, FIELD)[1].place))
+    with_ball = decide(usual, PLAY, True, FIELD)[1], decide(half, PLAY, True, field)[1]
+    assert with_ball[1].skill == with_ball[0].skill
+    assert with_ball[1].place == pytest.approx(small(with_ball[0].place))
+
+
+def test_robots_line_up_in_half_the_room_of_half_the_field() -> None:
+    field, game = (
+        Field(length_m=11.0, width_m=7.0),
+        Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(5, 0)),
+    )
+    place = decide(view(robot("cyan5", 1.2, 0.0), ball(5.0, 0.0)), game, False, field)[1].place
+    assert place.x_m == pytest.approx(5.0 - 5 * 0.75)
+
+
 def test_first_robot_keeps_the_goal() -> None:
     role, order = decide(view(robot("cyan1", -10.0, 0.0), ball(0.0, 0.0)), PLAY, False, FIELD)
     assert (role, order.skill) == ("goalkeeper", "keep_line")

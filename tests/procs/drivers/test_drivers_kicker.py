@@ -104,12 +104,21 @@ def test_newer_kick_replaces_one_that_the_hardware_ignores(kicker: Bench) -> Non
     assert kicker.port("kicker_state").sent[-1].kick_speed_m_s == 3.0
 
 
+@pytest.mark.parametrize("sensor", [READY, EMPTY, {"ball_held": True, "charged": False}])
 @pytest.mark.parametrize("speed_m_s", [0.0, -3.0, float("nan")])
-def test_implausible_speed_does_not_kick(kicker: Bench, speed_m_s: float) -> None:
+def test_implausible_speed_is_refused_at_once(kicker: Bench, speed_m_s: float, sensor: dict[str, bool]) -> None:
     kicker.kick.put(speed_m_s=speed_m_s)
-    drive = act(kicker, READY)
+    drive = act(kicker, sensor)
     assert (drive.kick_id, drive.kick_m_s) == (0, 0.0)
     assert answers(kicker) == [(1, answer_t.REJECTED)]
+
+
+def test_refusal_does_not_wait_behind_a_waiting_kick(kicker: Bench) -> None:
+    kicker.kick.put(speed_m_s=8.0)
+    kicker.kick.put(speed_m_s=-1.0)
+    act(kicker, EMPTY)
+    assert answers(kicker) == [(2, answer_t.REJECTED)]
+    assert act(kicker, READY).kick_m_s == 8.0
 
 
 def test_old_dribble_command_is_forgotten(kicker: Bench) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from fwk.testing import Bench, MemorySystem
-from lcmtypes.soccer import game_event_t, game_state_t
+from lcmtypes.soccer import game_event_t, game_state_t, true_robot_t
 from procs.refbox.client import RefBoxClient
 from procs.refbox.server import RefBoxServer
 from procs.referee.referee import Referee
@@ -119,6 +119,46 @@ def test_client_leads_the_referee(refbox: socket.socket) -> None:
     system.runners["world/refbox"].component.finalize()
     corner = game_state_t.CORNER_KICK
     assert states[1:] == [(corner, 2, True, 0), (corner, 2, False, 0), (2, 2, True, 1), (0, 0, True, 1)]
+
+
+@pytest.mark.parametrize(
+    ("command", "told"),
+    [
+        ({"name": "substitution", "robot": "magenta3"}, [("SUBSTITUTION", MAGENTA, 3)]),
+        ({"name": "repair", "robot": "cyan2"}, [("REPAIR", CYAN, 2)]),
+        ({"name": "red_card", "robot": "cyan2"}, [("RED_CARD", CYAN, 2)]),
+        ({"name": "park"}, [("PARK", "", None)]),
+        ({"name": "reset"}, [("RESET", "", None), ("FIRST_HALF", "", None), ("KICKOFF", CYAN, None)]),
+    ],
+)
+@pytest.mark.parametrize("in_break", [False, True])
+def test_command_by_hand_is_told_by_its_name(
+    command: dict[str, str], told: list[tuple[str, str, int | None]], in_break: bool
+) -> None:
+    referee, server = Bench(Referee, "world/referee"), Bench(RefBoxServer, "world/refbox", port=0)
+
+    def tick(**asked: str) -> None:
+        if asked:
+            referee.port("referee_command").put(**asked)
+        referee.port("ground_truth").put(robots=[true_robot_t(name=name) for name in ("cyan2", "magenta3")])
+        referee.iterate()
+        server.port("match_history").put(referee.port("match_history").sent[-1])
+        server.port("game_state").put(referee.port("game_state").sent[-1])
+        server.iterate()
+
+    with contextlib.closing(BaseStation(server.component.port)) as station:
+        for _ in range(3):
+            tick()
+        station.heard(3)
+        if in_break:
+            tick(name="half_time")
+            station.heard(2)
+        tick(**command)
+        tick()
+        tick(name="end_game")
+        heard = [(each["command"], each["targetTeam"], each.get("robotID")) for each in station.heard(len(told) + 2)]
+        assert heard == [*told, ("STOP", "", None), ("END_GAME", "", None)]
+    server.finalize()
 
 
 def test_client_tries_again_and_says_why(refbox: socket.socket) -> None:

@@ -5,11 +5,12 @@ import pytest
 from lcmtypes.soccer import game_event_t, game_state_t
 from procs.refbox.news import news
 from procs.refbox.protocol import LONGEST, Command, ProtocolError, Stream, decode, encode
+from procs.referee.reasons import PARK, REPAIR, RESET, SUBSTITUTION
 
 ADDRESSES = {"cyan": "224.16.32.1", "magenta": "224.16.32.2"}
 
 
-def state(kind: int, team: int = 0, stopped: bool = True, **more: int) -> game_state_t:
+def state(kind: int, team: int = 0, stopped: bool = True, **more: float) -> game_state_t:
     made = game_state_t()
     made.state, made.state_team, made.stopped, made.half = kind, team, stopped, 1
     for name, value in more.items():
@@ -100,6 +101,43 @@ def test_match_that_begins_anew_is_a_reset() -> None:
     before = state(game_state_t.PLAY, stopped=False, score_cyan=2, decisions=2)
     now = state(game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, decisions=1)
     assert [command.name for command in news(before, now, [game_event_t()])] == ["RESET", "FIRST_HALF", "KICKOFF"]
+
+
+def test_reset_before_anything_happened_is_told() -> None:
+    kick_off, reset = game_event_t(), game_event_t()
+    reset.reason = RESET
+    before = state(game_state_t.KICK_OFF, 1, decisions=1, time_in_half_s=3.0)
+    now = state(game_state_t.KICK_OFF, 1, decisions=1)
+    assert [command.name for command in news(before, now, [reset])] == ["RESET", "FIRST_HALF", "KICKOFF"]
+    again = state(game_state_t.KICK_OFF, 1, decisions=2)
+    assert news(before, again, [reset, kick_off]) == [], "another first half is not a reset"
+
+
+def left(robot: str, reason: str, card: int = 0) -> game_event_t:
+    event = game_event_t()
+    event.robot, event.reason, event.card = robot, reason, card
+    return event
+
+
+@pytest.mark.parametrize(
+    ("events", "sent_off", "told"),
+    [
+        ([left("cyan3", SUBSTITUTION)], ["cyan3"], [Command("SUBSTITUTION", "cyan", 3)]),
+        ([left("cyan3", REPAIR)], ["cyan3", "cyan4"], [Command("REPAIR", "cyan", 3), Command("REPAIR", "cyan", 4)]),
+        ([left("", PARK)], ["cyan3", "magenta2"], [Command("PARK")]),
+        ([left("", PARK), left("cyan3", SUBSTITUTION)], ["cyan3"], [Command("SUBSTITUTION", "cyan", 3)]),
+        ([left("cyan3", SUBSTITUTION), left("cyan3", REPAIR)], ["cyan3"], [Command("REPAIR", "cyan", 3)]),
+        ([left("cyan3", SUBSTITUTION), left("", PARK)], [], []),
+    ],
+)
+def test_robot_leaves_by_the_name_of_the_command(
+    events: list[game_event_t], sent_off: list[str], told: list[Command]
+) -> None:
+    now = state(game_state_t.PLAY, stopped=False, decisions=len(events))
+    now.sent_off = sent_off
+    assert news(PLAY, now, events) == told
+    assert news(now, now, events) == []
+    assert news(None, now, events) == [Command("FIRST_HALF"), *told, Command("START")]
 
 
 def test_robot_off_the_field_without_a_card_is_repaired() -> None:

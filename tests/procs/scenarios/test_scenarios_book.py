@@ -68,8 +68,17 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
         ("at_end: [ball]\ntime_s: 1\ncommands: [{at_s: 1, place_ball: {}}]", ScenarioError, "at_s is 1; the scenario"),
         ("robots: [cyan1]\nat_end: [frobnicate(cyan1)]", ScenarioError, "calls only abs, ball"),
         ("eventually: ['x(ball']", ScenarioError, "never closed"),
-        ("dummies: [cyan2]\neventually: [x(cyan3) > 0]", ScenarioError, "no robot 'cyan3'"),
-        ("dummies: [cyan2]\neventually: [world.game.score > 0]", ScenarioError, "world/game"),
+        ("dummies: [cyan2]\neventually: [x(cyan3) > 0]", ScenarioError, "no robot 'cyan3'; did you mean 'cyan2'?"),
+        ("dummies: [cyan2]\nalways: [x(ball) < 9 or x(cyan3) > 0]", ScenarioError, "no robot 'cyan3'; did you mean"),
+        ("dummies: [a]\neventually: [world.game_stat.half > 0]", ScenarioError, "did you mean 'world/game_state'?"),
+        ("dummies: [a]\nat_end: ['state(\"plan\")']", ScenarioError, "no state 'plan'; did you mean 'play'?"),
+        ('dummies: [a]\nat_end: [\'state("play", "red")\']', ScenarioError, "no team 'red'; there are cyan, magenta"),
+        ("dummies: [a]\nat_end: [bal_speed < 1]", ScenarioError, "no 'bal_speed'; did you mean 'ball_speed'?"),
+        ("at_end: [ball_speed < 1]\ntime_s: .inf", ScenarioError, "time_s: .*finite number"),
+        ("at_end: [ball_speed < 1]\ntime_s: .nan", ScenarioError, "time_s: "),
+        ("at_end: [ball_speed < 1]\nball: {x_m: .nan}", ScenarioError, "ball.x_m: .*finite number"),
+        ("commands: [{at_s: .nan, place_ball: {}}]", ScenarioError, "commands.0.at_s: "),
+        ("commands: [{place_robot: {x_m: .inf}}]", ScenarioError, "x_m is inf; it should be a finite number"),
     ],
 )
 def test_bad_scenario_is_named(tmp_path: Path, text: str, error: type[Exception], message: str) -> None:
@@ -124,7 +133,7 @@ def test_command_without_an_answer_breaks(tmp_path: Path, at_s: float, condition
 
 @pytest.mark.parametrize("text", ['state("offside")', "world.game_state.goals", "cyan9.role.value", "2 ** 10 ** 10"])
 def test_condition_that_cannot_be_judged_is_a_mistake(tmp_path: Path, text: str) -> None:
-    with pytest.raises(ScenarioError, match=r"mine.yaml: .*Error: "):
+    with pytest.raises(ScenarioError, match=r"mine.yaml: '.*': "):
         read(written(tmp_path, f"dummies: [cyan2]\nalways: ['{text}']\n"))
 
 

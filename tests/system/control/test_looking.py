@@ -101,6 +101,7 @@ def test_settings_change_at_the_recorded_tick(run: Steered) -> None:
     assert run.fwk("config", "get", "r/counter.step") == "0.25\n"
     assert "did you mean 'step'?" in run.fwk("config", "set", "r/counter.stp=1", code=2)
     assert "should be a valid number" in run.fwk("config", "set", "r/counter.step=far", code=2)
+    assert "shared.step=1' changes nothing; name the components" in run.fwk("config", "set", "shared.step=1", code=2)
     run.steer("restart", "r/counter")
     run.ticks_pass()
     assert "step is 0.25" in run.fwk("log", "--component", "r/counter", "--level", "warning")

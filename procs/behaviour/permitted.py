@@ -1,0 +1,35 @@
+"""Places where a robot may stand: between the walls, in no goal, and for field players in no goal area."""
+
+from collections.abc import Mapping
+
+from lcmtypes.soccer import world_model_t
+from procs.behaviour.bodies import Bodies
+from procs.behaviour.goals import Goals
+from procs.behaviour.identity import number_of_mate, number_of_player
+from procs.behaviour.obstacles import reachable
+from procs.behaviour.roles import ABSENT
+from procs.model.field import Field, Point
+from procs.model.robot import Player
+
+
+def is_field_player(model: world_model_t, robot: str, players: Mapping[str, Player]) -> bool:
+    """Returns whether a mate keeps the goal: the lowest number of those on the field.
+
+    A robot that is alone may go everywhere.
+    """
+    number = number_of_player(robot, players)
+    return any(mate.role != ABSENT and number_of_mate(mate, players) < number for mate in model.mates)
+
+
+class Permitted:
+    """Finds the place nearest to a target where a robot may stand; world frame, or attack frame."""
+
+    def __init__(self, field: Field, bodies: Bodies) -> None:
+        self._field, self._bodies = field, bodies
+        self.goals = Goals(field, bodies)
+        """The nets and areas that ways lead around."""
+
+    def nearest(self, place: Point, field_player: bool) -> Point:
+        """Returns the place, or the nearest one that is permitted; a goal's is before its line."""
+        place = reachable(place, self._field, self._bodies)
+        return self.goals.outside_areas(place) if field_player else place
