@@ -1,5 +1,6 @@
 """Mistakes in scenario files, in words that say where they are and what would be right."""
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
