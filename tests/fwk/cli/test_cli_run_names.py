@@ -52,7 +52,7 @@ def test_a_run_in_the_background_is_found_and_ended(
     assert again.returncode == 2
     assert "a run is called 'garden' already" in " ".join(again.stdout.replace("│", " ").split())
     ended = run(folder, "fwk", "stop", "--all", "--run", "garden")
-    assert (ended.returncode, "garden: ended" in ended.stdout) == (0, True)
+    assert (ended.returncode, "garden: ended" in ended.stdout) == (0, True), ended.stdout + ended.stderr
     (row,) = listed(folder, "fwk", "runs", "list")
     assert (row["result"], row["exit_code"], row["in_use"]) == ("interrupted", 0, False)
     assert run(folder, "fwk", "status", "--run", "garden").returncode == 2
