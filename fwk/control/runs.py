@@ -14,6 +14,8 @@ _TOGETHER = 64
 """Number of runs that are asked at a time."""
 _NEEDED = frozenset(("name", "plan", "pid"))
 """Keys of the answer by which a run is chosen."""
+_BUSY_S = 5.0
+"""Time that a run which is looked for by name gets to answer if it was silent at first, as on a busy machine."""
 
 
 def look() -> dict[int, dict[str, Any]]:
@@ -23,20 +25,20 @@ def look() -> dict[int, dict[str, Any]]:
     ports = address.running()
     found: dict[int, dict[str, Any]] = {}
     for first in range(0, len(ports), _TOGETHER):
-        found |= _asked(ports[first : first + _TOGETHER])
+        found |= _asked(ports[first : first + _TOGETHER], LOOK_S)
     return found
 
 
-def _asked(ports: list[int]) -> dict[int, dict[str, Any]]:
+def _asked(ports: list[int], within_s: float) -> dict[int, dict[str, Any]]:
     """Asks several runs at once, so that silent ones cost no more time than one."""
     clients: dict[int, Client] = {}
     found: dict[int, dict[str, Any]] = {}
     with contextlib.ExitStack() as stack:
         for port in ports:
             with contextlib.suppress(ControlError):
-                clients[port] = stack.enter_context(Client(address.supervisor_address(port), LOOK_S))
+                clients[port] = stack.enter_context(Client(address.supervisor_address(port), within_s))
                 clients[port].send("run")
-        end_us = monotonic_us() + round(LOOK_S * US_PER_S)
+        end_us = monotonic_us() + round(within_s * US_PER_S)
         for port, client in clients.items():
             with contextlib.suppress(ControlError, TimeoutError, EOFError):
                 run = client.answer(end_us)
@@ -76,7 +78,10 @@ def find(chosen: str | int | None) -> int:
         return by_port[wanted]
     if not wanted and len(ports := address.running()) == 1:
         return ports[0]
-    runs = _preferred(look(), wanted)
+    runs = look()
+    if wanted and all(run["name"] != wanted for run in runs.values()):
+        runs = {**runs, **_asked([port for port in address.running() if port not in runs], _BUSY_S)}
+    runs = _preferred(runs, wanted)
     if wanted:
         ports = [port for port, run in runs.items() if wanted in (run.get("name"), str(port))]
         if len(ports) == 1:

@@ -85,6 +85,16 @@ def test_silent_and_false_runs_hide_no_other(fake: Callable[[bytes], str], monke
     assert monotonic_us() - began_us < 550_000  # the silent ones are waited for together
 
 
+def test_busy_run_is_found_by_name_although_it_was_silent(
+    fake: Callable[[bytes], str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = fake(b'{"ok": true, "name": "solo", "plan": "soccer", "pid": 22}\n')
+    monkeypatch.setattr(address, "running", lambda: [1, 2])
+    monkeypatch.setattr(address, "supervisor_address", lambda port: found)
+    monkeypatch.setattr(runs, "look", lambda: {1: RUNS[1]})
+    assert runs.find("solo") == 2
+
+
 def test_root_prefers_its_own_run(known: dict[int, dict[str, object]]) -> None:
     known[3] = {**known[1], "owner": os.geteuid()}
     assert runs.find("match") == 3
