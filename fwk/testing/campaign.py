@@ -93,7 +93,7 @@ class Campaign:
         """
         self._folder = folder
         self._flaws: dict[int, str] = {}
-        """What is wrong with the result of a seed, by seeds whose file was read; an empty text: nothing."""
+        """Flaw of the result of each seed whose file was read; an empty text if the result is whole."""
         folder.mkdir(parents=True, exist_ok=True)
         note, text = folder / "campaign.json", json.dumps(dict(about), sort_keys=True)
         old = _read(note)

@@ -1,4 +1,4 @@
-"""Finds the shortest way around discs, over points beside them; whoever follows it does not turn back."""
+"""Finds the shortest way around discs, over points beside them; a robot that follows it does not turn back."""
 
 import heapq
 import math

@@ -10,16 +10,16 @@ from procs.model.realism import Realism
 
 
 class ExpectedErrors(BaseModel):
-    """Standard deviations."""
+    """Standard deviations of what sensors report."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     ball_px: PositiveFloat = 0.5
-    """Of a ball's centre in the picture of a standing robot, with the shaking of its mirror."""
+    """A ball's centre in the picture of a standing robot; the shaking of its mirror is included."""
     robot_px: tuple[PositiveFloat, PositiveFloat] = (0.6, 1.5)
-    """Of another robot's middle in the picture, along and across the ray, with the shaking of the mirror."""
+    """Another robot's middle in the picture, along and across the ray; the shaking of the mirror is included."""
     frame_m: NonNegativeFloat = 0.006
-    """Of a position by the lines of one frame, as far as all of its points share it."""
+    """A position by the lines of one frame: the part of its error that all points of the frame share."""
     frame_rad: NonNegativeFloat = 0.002
     """The same of a heading."""
     frame_s: NonNegativeFloat = 0.02
@@ -27,7 +27,8 @@ class ExpectedErrors(BaseModel):
     frame_rad_s_m: NonNegativeFloat = 0.001
     """Growth of `frame_rad` with each m/s of the robot."""
     lasting_m: NonNegativeFloat = 0.0
-    """Of a position in all frames alike, as by a mirror that is tilted: no number of frames makes it less."""
+    """A position: the part of its error that is the same in all frames, as with a tilted mirror; frames do not average
+    it out."""
     lasting_rad: NonNegativeFloat = 0.0
     """The same of a heading."""
     wheel_scale_sd: NonNegativeFloat = 0.03
