@@ -111,12 +111,16 @@ def _ball_samples(piece: Piece, interface: str = "world_model") -> Samples:
 
 
 def placed_ticks(piece: Piece) -> set[int]:
-    """Returns the ticks in which, or shortly before which, the crew put the ball elsewhere."""
+    """Returns the ticks in which, or shortly before which, the crew put the ball elsewhere.
+
+    The ball has jumped, or the touch before is forgotten, which only happens to a ball that is placed.
+    """
     ticks: set[int] = set()
-    for (_, before), (tick, truth) in itertools.pairwise(sorted(piece.truth.items())):
+    for (earlier, before), (tick, truth) in itertools.pairwise(sorted(piece.truth.items())):
+        forgotten = piece.last_touch.get(earlier) and not piece.last_touch.get(tick)
         way_m = math.dist((before.ball_x_m, before.ball_y_m), (truth.ball_x_m, truth.ball_y_m))
         speed_m_s = max(math.hypot(each.ball_vx_m_s, each.ball_vy_m_s) for each in (before, truth))
-        if way_m > _JUMP_M + speed_m_s * piece.period_s:
+        if forgotten or way_m > _JUMP_M + speed_m_s * piece.period_s:
             ticks.update(range(tick, tick + round(_PLACED_S / piece.period_s)))
     return ticks
 

@@ -48,6 +48,8 @@ class Piece:
     truth: dict[int, ground_truth_t] = field(default_factory=dict)
     game: dict[int, game_state_t] = field(default_factory=dict)
     events: dict[int, list[match_event_t]] = field(default_factory=dict)
+    last_touch: dict[int, str] = field(default_factory=dict)
+    """Tick to the robot that touched the ball last; empty: none since the ball was placed."""
     by_robot: dict[str, dict[str, dict[int, Any]]] = field(default_factory=dict)
     """Interface to robot to tick to message, for the interfaces in `BELIEFS`."""
     told_bytes: dict[str, int] = field(default_factory=dict)
@@ -98,8 +100,9 @@ def piece_of(sent: Mapping[str, Sequence[bytes]], period_s: float) -> Piece:
     piece = Piece(period_s)
     piece.truth = {truth.header.tick: truth for truth in map(ground_truth_t.decode, sent["world/ground_truth"])}
     piece.game = {game.header.tick: game for game in map(game_state_t.decode, sent.get("world/game_state", ()))}
-    reports = map(match_events_t.decode, sent.get("world/match_events", ()))
+    reports = [match_events_t.decode(data) for data in sent.get("world/match_events", ())]
     piece.events = {report.header.tick: report.events for report in reports}
+    piece.last_touch = {report.header.tick: report.last_touch for report in reports}
     measured = sent.get("world/field", ())
     piece.measures = field_of(field_t.decode(measured[-1])) if measured else Field()
     found: dict[str, dict[str, dict[int, Any]]] = defaultdict(dict)

@@ -97,6 +97,17 @@ def test_ball_does_not_roll_freely_just_after_a_bounce() -> None:
     assert len(believed(made)["ball moving, position"]) == 20
 
 
+def test_ball_that_the_crew_moves_a_little_is_left_out_too() -> None:
+    made = piece([robot("cyan1", 0.0, 1.0), robot("magenta1", 9.0, 0.0)], ticks=20, vx_m_s=0.0)
+    made.by_robot["world_model"] = {"cyan1": {tick: model((0.1, 0.0)) for tick in made.truth}}
+    for tick in range(FIRST + 5, FIRST + 20):
+        made.truth[tick].ball_y_m = 0.15
+    made.last_touch = dict.fromkeys(made.truth, "magenta1")
+    assert len(believed(made)["ball resting, position"]) == 20, "nothing says that it was placed"
+    made.last_touch |= dict.fromkeys(range(FIRST + 5, FIRST + 20), "")
+    assert len(believed(made)["ball resting, position"]) == 20 - 10, "0.5 s from where it was put down"
+
+
 @pytest.mark.parametrize(("toucher", "case"), [("cyan1", "held by itself"), ("magenta1", "held by another")])
 def test_claims_are_counted_by_the_holder_of_the_ball(toucher: str, case: str) -> None:
     made = piece([robot("cyan1", 0.0, 1.0), robot("magenta1", 9.0, 0.0)])
