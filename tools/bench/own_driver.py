@@ -25,7 +25,8 @@ from tools.bench.shape import Shape
 from tools.bench.timing import now_us, sleep_s
 
 _BUS_PORT = 17_700
-_PORTS = Ports(_BUS_PORT, 0, 0)
+PORTS = Ports(_BUS_PORT, 0, 0)
+"""Ports of a launched run."""
 _PATIENCE_S = 60.0
 _LOOK_S = 0.2
 _WARM_PERIODS = 20
@@ -58,7 +59,7 @@ def jitter(job: dict[str, Any], folder: str) -> dict[str, Any]:
     file = fwk_launch_file.write(shape, shape.save(), wall_period_s=job["period_s"])
     with (
         _busy(os.cpu_count() or 1 if job["busy"] else 0),
-        _launched(folder, file, "--time", str(job["seconds"])) as run,
+        launched(folder, file, "--time", str(job["seconds"])) as run,
     ):
         try:
             run.wait(job["seconds"] + _PATIENCE_S)
@@ -84,12 +85,12 @@ def start(job: dict[str, Any], folder: str) -> dict[str, Any]:
     Raises:
         RunFailedError: no first tick, or the killed component did not come back.
     """
-    records, states = multicast_receiver(_PORTS.record), multicast_receiver(_PORTS.status)
+    records, states = multicast_receiver(PORTS.record), multicast_receiver(PORTS.status)
     start_us = now_us()
-    with _launched(folder, job["file"], "--speed", "1") as run:
+    with launched(folder, job["file"], "--speed", "1") as run:
 
         def next_record() -> tick_record_t:
-            return tick_record_t.decode(_message(records, run, folder))
+            return tick_record_t.decode(next_message(records, run, folder))
 
         record = next_record()
         first_us = now_us()
@@ -97,7 +98,7 @@ def start(job: dict[str, Any], folder: str) -> dict[str, Any]:
             record = next_record()
         pids = [*accounting.descendants(run.pid), run.pid]
         held_mb = accounting.pss_mb(pids)
-        victim = status_t.decode(_message(states, run, folder)).hosts[-1]
+        victim = status_t.decode(next_message(states, run, folder)).hosts[-1]
         os.kill(victim.pid, signal.SIGKILL)
         killed_us = now_us()
         while not _has_started(next_record(), victim.host):
@@ -113,7 +114,7 @@ def start(job: dict[str, Any], folder: str) -> dict[str, Any]:
     }
 
 
-def _message(source: socket.socket, run: "subprocess.Popen[bytes]", folder: str) -> bytes:
+def next_message(source: socket.socket, run: "subprocess.Popen[bytes]", folder: str) -> bytes:
     """Returns the next message on a socket of the run.
 
     Raises:
@@ -137,7 +138,7 @@ def _has_started(record: tick_record_t, host: int) -> bool:
 
 
 @contextmanager
-def _launched(folder: str, file: str, *words: str) -> Iterator["subprocess.Popen[bytes]"]:
+def launched(folder: str, file: str, *words: str) -> Iterator["subprocess.Popen[bytes]"]:
     """Runs `fwk-launch` with its run directory in `folder`; kills it if it still runs at the end."""
     command = [CORE.python, "-m", "fwk.cli.launch", file, "--plain", "--bus-port", str(_BUS_PORT), *words]
     variables = {**CORE.process_variables(), "HOME": folder}
