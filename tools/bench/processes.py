@@ -3,6 +3,7 @@
 The launch file runs as users start it, as fast as it can, with gateway and recording.
 """
 
+import signal
 from collections import defaultdict
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,6 +19,7 @@ from tools.bench.own_driver import PORTS, launched, next_message
 from tools.bench.timing import now_us
 
 _WARM_UP = 50
+_PATIENCE_S = 60.0
 
 
 class Spent(NamedTuple):
@@ -45,6 +47,8 @@ def cpu_ms(file: str, ticks: int, hosting: str, warm_up: int = _WARM_UP) -> tupl
         before, began_us = _spent_ms(run.pid), now_us()
         pass_tick(warm_up + ticks)
         after, took_us = _spent_ms(run.pid), now_us() - began_us
+        run.send_signal(signal.SIGINT)
+        run.wait(_PATIENCE_S)
     records.close()
     by_name: defaultdict[str, list[float]] = defaultdict(list)
     for pid, (name, total_ms) in after.items():
