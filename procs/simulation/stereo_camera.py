@@ -73,5 +73,4 @@ class StereoCamera(Component):
     def _apply_settings(self) -> None:
         config = self.config
         self._errors = chosen(PRESETS[config.realism], config)
-        bodies = Bodies(config.robot.radius_m, config.robot.height_m, config.ball.radius_m)
-        self._renderer = StereoRenderer(config.rig, config.field, bodies)
+        self._renderer = StereoRenderer(config.rig, config.field, Bodies.of(config.robot, config.ball))
