@@ -18,6 +18,7 @@ from procs.vision.uncertainty import ground_covariance
 
 _BODY_SAMPLES = 4  # so many black samples in a row are a body
 _COVERED = 0.75  # share of rays that are black from their beginning: a covered camera, not robots all around
+_BETWEEN_RAYS = 0.23  # standard deviation of a middle across the ray, as a part of the way between two rays
 _FEET_SAMPLES = 3  # carpet must be visible this close before it, otherwise the near edge is hidden
 
 
@@ -41,7 +42,8 @@ class ObstacleFinder:
     """Colours of the carpet and its lines."""
     radius_m: float = ROBOT.radius_m
     deviation_px: tuple[float, float] = (0.5, 0.8)
-    """Standard deviation of the found middle in the picture, along and across the ray."""
+    """Standard deviation of the found middle in the picture, along and across the ray; the rays' distance from each
+    other may make it larger."""
     least_rays: int = 2
     """Rays that must meet a robot."""
 
@@ -54,6 +56,8 @@ class ObstacleFinder:
 
     def _near_edges(self, hsv: Picture) -> Floats:
         """Points (n, 2) at which rays meet the feet of something black, in the order of the rays."""
+        if hsv.shape[1] < _BODY_SAMPLES:
+            return np.empty((0, 2))
         black = self.black.mask(hsv)
         standing = reduce(or_, (colour.mask(hsv) for colour in self.carpet))
         last = black.shape[1] - _BODY_SAMPLES + 1
@@ -94,7 +98,10 @@ class ObstacleFinder:
         across_m = edge_y_m * ahead_x - edge_x_m * ahead_y
         away_m = median(along_m + np.sqrt(np.maximum(self.radius_m**2 - across_m**2, 0.0)))
         x_m, y_m = away_m * ahead_x, away_m * ahead_y
-        return Obstacle(x_m, y_m, ground_covariance(self.mirror, x_m, y_m, *self.deviation_px))
+        along_px, across_px = self.deviation_px
+        ray_px = math.tau / len(self.star.ground_m) * self.mirror.radius_px(abs(away_m))
+        across_px = max(across_px, _BETWEEN_RAYS * ray_px)  # pixels do not help where rays are further apart
+        return Obstacle(x_m, y_m, ground_covariance(self.mirror, x_m, y_m, along_px, across_px))
 
 
 def _any_before(mask: Mask, rays: NDArray[np.intp], starts: NDArray[np.intp]) -> Mask:

@@ -1,13 +1,14 @@
 """Finds the ball in the omnidirectional camera's picture."""
 
 from pydantic import Field as Setting
+from pydantic import field_validator
 
 from fwk import Writes
 from lcmtypes.soccer import ball_candidate_t, ball_percept_t
 from procs.model.ball import BALL, BallModel
 from procs.model.expected_errors import EXPECTED
 from procs.vision.ball_finder import BallFinder, BallSighting
-from procs.vision.colours import ColourRange, Hsv, Picture
+from procs.vision.colours import ColourRange, Hsv, Picture, not_below
 from procs.vision.detector import Detector, DetectorConfig
 
 
@@ -26,6 +27,8 @@ class OmniBallConfig(DetectorConfig):
     """Least visible share of the ball's area; a ball more hidden than that is not seen."""
     farthest_m: float = Setting(default=8.0, gt=0.0)
     """Largest distance of a ball."""
+
+    _possible = field_validator("ball_high")(not_below)
 
 
 class OmniBall(Detector):

@@ -12,6 +12,7 @@ from procs.model.field import Arc, Field, Segment
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.sensor_noise import SensorNoise
 from procs.simulation.rendering.shapes import Bodies
+from procs.vision.calibration import MirrorConfig
 from procs.vision.colours import BLACK, CYAN, GREEN, MAGENTA, WHITE, Bgr, ColourRange, Picture, to_hsv
 from procs.vision.line_finder import LineFinder
 from procs.vision.obstacle_finder import Obstacle, ObstacleFinder
@@ -198,6 +199,22 @@ def test_obstacle_covariance_is_honest() -> None:
         error = np.array([found.x_m, found.y_m]) - truth
         normed.append(error @ np.linalg.solve(found.covariance_m2, error))
     assert 0.7 < np.mean(normed) < 3.0  # two degrees of freedom: 2 if the covariance were exact
+
+
+@pytest.mark.parametrize(("size_px", "rays"), [(400, 90), (1200, 180), (400, 720)])
+def test_covariance_tells_how_far_the_rays_are_apart(size_px: int, rays: int) -> None:
+    mirror = MirrorConfig(size_px=size_px).mirror()
+    star = Scan.star(mirror, rays, 0.28, DEFAULTS.farthest_m)
+    finder = ObstacleFinder(mirror, star, BLACKS, (GREENS, WHITES), deviation_px=EXPECTED["realistic"].robot_px)
+    drawn, rng, normed = Renderer(mirror, FIELD, Bodies()), np.random.default_rng(5), []
+    for _ in range(30):
+        angle, distance_m = rng.uniform(-math.pi, math.pi), rng.uniform(1.0, 3.5)
+        truth = distance_m * np.array([math.cos(angle), math.sin(angle)])
+        scene = Scene(Pose(-4.0, 1.0, 0.0), [(-4.0 + truth[0], 1.0 + truth[1], CYAN)], None)
+        (found,) = finder.find(to_hsv(star.look_up(drawn.render(scene))))
+        error = np.array([found.x_m, found.y_m]) - truth
+        normed.append(error @ np.linalg.solve(found.covariance_m2, error))
+    assert np.mean(normed) < 3.0
 
 
 def test_two_robots_side_by_side_are_two_obstacles() -> None:
