@@ -5,9 +5,13 @@ from pydantic import Field as Setting
 
 from fwk import Component, Config, Image, Writes
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
+from procs.model.ball import BALL, BallModel
 from procs.model.robot import ROBOT, RobotModel
 from procs.vision.stereo_finder import StereoFinder
 from procs.vision.stereo_rig import StereoRig
+
+_ABOVE_BALL_M = 0.03
+_LOWEST_M, _LOWEST = 0.28, 0.55  # lower edge of what is looked at, and as a share of the height of low robots
 
 
 class StereoObsConfig(Config):
@@ -17,6 +21,8 @@ class StereoObsConfig(Config):
     """Calibration of the pair."""
     robot: RobotModel = ROBOT
     """Geometry of the other robots."""
+    ball: BallModel = BALL
+    """Size of the ball, which is no obstacle."""
     farthest_m: float = Setting(default=4.5, gt=0.5)
     """Obstacles further ahead are not reported."""
     deviation_px: float = Setting(default=0.35, gt=0.0)
@@ -54,6 +60,7 @@ class StereoObs(Component):
         config = self.config
         self._finder = StereoFinder(
             config.rig,
+            lowest_m=max(2 * config.ball.radius_m + _ABOVE_BALL_M, min(_LOWEST_M, _LOWEST * config.robot.height_m)),
             farthest_m=config.farthest_m,
             radius_m=config.robot.radius_m,
             deviation_px=config.deviation_px,
