@@ -224,6 +224,28 @@ def test_two_robots_side_by_side_are_two_obstacles() -> None:
     assert np.allclose(places, [(-0.26, 2.0), (0.26, 2.0)], atol=0.08)
 
 
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize("bearing_rad", [0.3, math.pi])  # the rays begin and end at 0
+def test_robot_half_hidden_by_another_is_not_drawn_aside(side: float, bearing_rad: float) -> None:
+    own, normed = Pose(-4.0, 1.0, 0.0), []
+    for step in range(12):
+        near_m, far_m = 1.2 + 0.08 * step, 2.6 + 0.05 * step
+        apart_rad = 1.1 * math.asin(0.25 / near_m) * side  # the near one hides nearly half of the far one
+        near, far = (
+            distance_m * np.array((math.cos(angle), math.sin(angle)))
+            for distance_m, angle in ((near_m, bearing_rad), (far_m, bearing_rad + apart_rad))
+        )
+        others = [(own.x_m + at[0], own.y_m + at[1], CYAN) for at in (near, far)]
+        found = obstacles(renderer().render(Scene(own, others, None)))
+        error, covariance_m2 = min(
+            ((np.array((each.x_m, each.y_m)) - far, each.covariance_m2) for each in found),
+            key=lambda pair: float(np.hypot(*pair[0])),
+        )
+        assert np.hypot(*error) < 0.15
+        normed.append(error @ np.linalg.solve(covariance_m2, error))
+    assert np.mean(normed) < 3.0
+
+
 def test_ball_before_a_robot_does_not_split_it() -> None:
     scene = Scene(Pose(-3.0, 2.0, 0.0), [(-1.0, 2.0, CYAN)], (-1.37, 2.0, 0.11))
     (found,) = obstacles(renderer().render(scene))
