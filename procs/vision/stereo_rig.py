@@ -55,7 +55,14 @@ class StereoRig(Config):
         return np.asarray((np.arange(self.height_px, dtype=np.float64) - (self.height_px - 1) / 2) / self.focal_px)
 
     def halves(self, pixels: Grey) -> tuple[Grey, Grey]:
-        """Returns the frames of the left and the right camera from both side by side, in any size, grey or coloured."""
+        """Returns the frames of the left and the right camera from both side by side, in any size, grey or coloured.
+
+        Raises:
+            ValueError: the frames are neither grey nor have three colours.
+        """
+        if pixels.ndim == 3 and pixels.shape[2] != 3:
+            shape = " x ".join(map(str, pixels.shape))
+            raise ValueError(f"the frame is {shape}; the pair needs grey or three colours")
         grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY) if pixels.ndim == 3 else pixels
         pair = scaled(np.asarray(grey, np.uint8), 2 * self.width_px, self.height_px)
         return pair[:, : self.width_px], pair[:, self.width_px :]

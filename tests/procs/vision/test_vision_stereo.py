@@ -170,6 +170,13 @@ def test_picture_of_another_size_is_scaled() -> None:
     assert (found.x_m, found.y_m) == pytest.approx((2.0, 0.0), abs=0.15)
 
 
+def test_frame_without_usable_colours_is_refused() -> None:
+    bench = Bench(StereoObs)
+    bench.show("stereo_image", np.zeros((100, 200, 2), np.uint8))
+    with pytest.raises(ValueError, match="the frame is 100 x 200 x 2; the pair needs grey or three colours"):
+        bench.iterate()
+
+
 def test_fusion_weights_by_covariance_and_keeps_the_rest() -> None:
     around = [obstacle(2.0, 0.0, along_m=0.2, across_m=0.05), obstacle(-1.0, 1.0)]
     ahead = [obstacle(2.2, 0.1, along_m=0.05, across_m=0.2), obstacle(3.0, 1.0)]
