@@ -59,7 +59,7 @@ class LocalizationConfig(Config):
     """White points further away are not used."""
     points: int = Setting(default=100, ge=10)
     """Most white points of a frame that are used."""
-    search_period_s: float = Setting(default=0.5, gt=0.0)
+    search_period_s: float = Setting(default=0.5, gt=0.0, le=60.0)
     """From one search of the whole field to the next while the pose is known."""
     lost_score: float = Setting(default=0.4, gt=0.0, lt=1.0)
     """The pose is given up when the points fit worse than this for some frames; 1 is a perfect fit."""

@@ -46,15 +46,15 @@ class PerceptsConfig(Config):
     """Standard deviation by which the standing robot's mirror shakes, in pixels."""
     shake_px_per_m_s: float | None = Setting(default=None, ge=0.0, le=3.0)
     """Growth of that deviation with each m/s of the robot, in pixels."""
-    ball_px: float | None = Setting(default=None, ge=0.0)
+    ball_px: float | None = Setting(default=None, ge=0.0, le=50.0)
     """Standard deviation of the ball's place, in pixels."""
-    ball_area_px: float | None = Setting(default=None, ge=0.0)
+    ball_area_px: float | None = Setting(default=None, ge=0.0, le=50.0)
     """Relative standard deviation of the ball's area in the picture, times its radius in pixels."""
-    robot_along_px: float | None = Setting(default=None, ge=0.0)
+    robot_along_px: float | None = Setting(default=None, ge=0.0, le=50.0)
     """Standard deviation of a robot's place along the ray from the camera, in pixels."""
-    robot_across_px: float | None = Setting(default=None, ge=0.0)
+    robot_across_px: float | None = Setting(default=None, ge=0.0, le=50.0)
     """The same across the ray."""
-    line_px: float | None = Setting(default=None, ge=0.0)
+    line_px: float | None = Setting(default=None, ge=0.0, le=50.0)
     """Standard deviation of a point on a line, along and across the ray, in pixels."""
     ball_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the frames in which a visible ball is not found."""
@@ -64,19 +64,19 @@ class PerceptsConfig(Config):
     """Part of the visible robots whose team is not recognized."""
     line_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the line points that are not found."""
-    ball_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
+    ball_phantoms_1_s: float | None = Setting(default=None, ge=0.0, le=100.0)
     """Balls a second that are not there."""
-    mouth_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
+    mouth_phantoms_1_s: float | None = Setting(default=None, ge=0.0, le=100.0)
     """Balls a second that seem to lie in the own mouth."""
-    robot_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
+    robot_phantoms_1_s: float | None = Setting(default=None, ge=0.0, le=100.0)
     """Robots a second that are not there."""
     line_phantoms: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the points that do not lie on a line."""
     tilt_sd_deg: float | None = Setting(default=None, ge=0.0, le=2.0)
     """Standard deviation of the mirror's uncalibrated tilt about either axis, constant in a match."""
-    gaps_1_min: float | None = Setting(default=None, ge=0.0)
+    gaps_1_min: float | None = Setting(default=None, ge=0.0, le=600.0)
     """Interruptions in a minute, in which frames are lost in a row."""
-    gap_s: float | None = Setting(default=None, ge=0.0)
+    gap_s: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Mean duration of an interruption."""
     field: Field = Field()
     """Measures of the field."""
@@ -88,11 +88,11 @@ class PerceptsConfig(Config):
     """Scan lines around the robot, as the detector of lines has them."""
     ring_distances_m: tuple[PositiveFloat, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
     """Radii of the rings, as the detector of lines has them."""
-    reach_m: float = Setting(default=7.0, gt=0.5)
+    reach_m: float = Setting(default=7.0, gt=0.5, le=20.0)
     """Largest distance of robots and line points; it is less where the mirror shows less."""
-    ball_reach_m: float = Setting(default=8.0, gt=0.0)
+    ball_reach_m: float = Setting(default=8.0, gt=0.0, le=20.0)
     """Largest distance of a ball; it is less where the mirror shows less."""
-    most_points: int = Setting(default=150, ge=1)
+    most_points: int = Setting(default=150, ge=1, le=10_000)
     """Line points sent at most."""
 
 

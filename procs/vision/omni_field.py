@@ -28,12 +28,12 @@ class OmniFieldConfig(DetectorConfig):
     """Geometry of the other robots."""
     nearest_m: float | None = Setting(default=None, gt=0.0)
     """Begin of the rays; by default just outside the robot's own body."""
-    farthest_m: float = Setting(default=7.0, gt=0.5)
+    farthest_m: float = Setting(default=7.0, gt=0.5, le=20.0)
     """End of the rays; they end before where the mirror shows no ground."""
     ring_distances_m: tuple[PositiveFloat, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
     """Radii of the circles that meet those lines which run towards the robot; what the mirror does not show is left
     out."""
-    most_points: int = Setting(default=150, ge=1)
+    most_points: int = Setting(default=150, ge=1, le=10_000)
     """Line points sent at most, picked evenly from those found."""
     deviation_px: tuple[PositiveFloat, PositiveFloat] | None = None
     """Standard deviation of a robot's middle in the picture, along and across the ray; null: by `realism`."""

@@ -23,9 +23,9 @@ class StereoObsConfig(Config):
     """Geometry of the other robots."""
     ball: BallModel = BALL
     """Size of the ball, which is no obstacle."""
-    farthest_m: float = Setting(default=4.5, gt=0.5)
+    farthest_m: float = Setting(default=4.5, gt=0.5, le=20.0)
     """Obstacles further ahead are not reported."""
-    deviation_px: float = Setting(default=0.35, gt=0.0)
+    deviation_px: float = Setting(default=0.35, gt=0.0, le=50.0)
     """Standard deviation of a disparity."""
 
 

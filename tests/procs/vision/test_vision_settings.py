@@ -42,7 +42,7 @@ def places_of(bench: Bench) -> list[tuple[float, float]]:
     [
         (MirrorConfig(view_angle_deg=80.0), {}),  # shows 4.3 m of ground
         (MirrorConfig(view_angle_deg=75.0), {"ring_distances_m": (0.7, 1.6, 5.0)}),
-        (MirrorConfig(), {"farthest_m": 1000.0}),
+        (MirrorConfig(), {"farthest_m": 20.0}),
         (MirrorConfig(size_px=120), {}),
         (MirrorConfig(), {"ring_distances_m": ()}),
     ],
