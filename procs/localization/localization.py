@@ -46,7 +46,7 @@ class LocalizationConfig(Config):
     field: Field = Field()
     """Measures of the field."""
     start_x_m: float | None = Setting(None, frozen=True)
-    """Start of the robot if it is known, world frame; needs the other two."""
+    """Start of the robot if it is known, world frame; needs the other two. It counts at the beginning of a run only."""
     start_y_m: float | None = Setting(None, frozen=True)
     """See start_x_m."""
     start_heading_rad: float | None = Setting(None, frozen=True)
@@ -115,12 +115,14 @@ class Localization(Component):
         self._yaw_rate_rad_s = 0.0
         self._turning_rad_s = 0.0  # mean since the last frame
         self._last_us = 0
-        self._localizer = SelfLocalizer(line_map(config.field), self._settings(), np.array(given) if given else None)
+        self._localizer = self._made(np.array(given) if given else None)
         self._updated_us = -1
         self._recent = RecentMotion()
         self._captured_us = 0  # exposure of the newest points
 
     def loop(self) -> None:
+        if self._updated_us < 0 and self.clock.tick > 1 + self.clock.every:
+            self._localizer = self._made(None)  # restarted: the robot has left its start
         knew = self._localizer.localized
         passed_s = self.clock.period_s if self._updated_us < 0 else self.clock.since_s(self._updated_us)
         updated_us, self._updated_us = self._updated_us, self.clock.now_us
@@ -137,6 +139,9 @@ class Localization(Component):
         pose.covariance = self._localizer.covariance.tolist()
         pose.localized = self._localizer.localized
         self.pose.write()
+
+    def _made(self, start: Floats | None) -> SelfLocalizer:
+        return SelfLocalizer(line_map(self.config.field), self._settings(), start)
 
     def config_changed(self) -> None:
         self._localizer.change(line_map(self.config.field), self._settings())
