@@ -8,6 +8,7 @@ from fwk import Writes
 from lcmtypes.soccer import line_points_t, obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
 from procs.model.expected_errors import EXPECTED
+from procs.model.field import Field
 from procs.model.robot import ROBOT, RobotModel
 from procs.vision.colours import ColourRange, Hsv, Picture, not_below, to_hsv
 from procs.vision.detector import Detector, DetectorConfig
@@ -17,6 +18,8 @@ from procs.vision.obstacle_finder import Obstacle, ObstacleFinder
 from procs.vision.scan import Scan
 
 _BESIDE_BODY_M = 0.03
+_WIDEST, _NARROWEST = 3.2, 0.4  # way over a line, as shares of its width ...
+_BLURRED_M = 0.15  # ... and over a narrow one as pixels show it
 
 
 class OmniFieldConfig(DetectorConfig):
@@ -26,6 +29,8 @@ class OmniFieldConfig(DetectorConfig):
     """Scan lines around the robot; with fewer than 60 a robot 3 m away is between two of them."""
     robot: RobotModel = ROBOT
     """Geometry of the other robots."""
+    field: Field = Field()
+    """Measures of the field; how wide a line is tells lines from other white things."""
     nearest_m: float | None = Setting(default=None, gt=0.0)
     """Begin of the rays; by default just outside the robot's own body."""
     farthest_m: float = Setting(default=7.0, gt=0.5, le=20.0)
@@ -103,7 +108,10 @@ class OmniField(Detector):
         white = ColourRange(config.white_low, config.white_high)
         black = ColourRange(config.black_low, config.black_high)
         self._star, self._rings = _star(config), _rings(config)
-        self._lines = LineFinder(green, white)
+        line_m = config.field.line_width_m
+        self._lines = LineFinder(
+            green, white, widest_m=max(_WIDEST * line_m, _BLURRED_M), narrowest_m=_NARROWEST * line_m
+        )
         teams = ColourRange(config.cyan_low, config.cyan_high), ColourRange(config.magenta_low, config.magenta_high)
         self._markers = MarkerFinder(mirror, teams, config.robot.radius_m, config.robot.marker_m)
         deviation_px = config.deviation_px or EXPECTED[config.realism].robot_px

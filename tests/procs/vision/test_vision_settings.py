@@ -56,6 +56,18 @@ def test_what_the_mirror_does_not_show_is_no_robot(mirror: MirrorConfig, setting
     assert max(np.hypot(points.x_m, points.y_m)) <= reach_m
 
 
+@pytest.mark.parametrize(("width_m", "least"), [(0.02, 90), (0.125, 150), (0.37, 150)])
+def test_lines_of_any_width_are_found(width_m: float, least: int) -> None:
+    mirror, field = MirrorConfig(size_px=360, view_angle_deg=86.0), Field(line_width_m=width_m)
+    bench = Bench(OmniField, mirror=mirror.model_dump(), field={"line_width_m": width_m}, most_points=1000)
+    counts = []
+    for x_m, y_m in ((-8.0, 3.0), (-4.0, 1.0), (0.5, -2.0), (7.0, 2.0)):
+        bench.show("image", Renderer(mirror.mirror(), field, Bodies()).render(Scene(Pose(x_m, y_m, 0.4), [], None)))
+        bench.iterate()
+        counts.append(bench.port("line_points").sent[-1].n)
+    assert np.mean(counts) >= least
+
+
 def test_mirror_that_shows_no_ring_gives_points_of_rays() -> None:
     rays = found_with(MirrorConfig(), ring_distances_m=()).port("line_points").sent[-1].n
     far = found_with(MirrorConfig(view_angle_deg=86.0, size_px=360), ring_distances_m=(11.0,))
