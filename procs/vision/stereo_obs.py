@@ -7,6 +7,7 @@ from fwk import Component, Config, Image, Writes
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
 from procs.model.ball import BALL, BallModel
 from procs.model.robot import ROBOT, RobotModel
+from procs.vision.exposure import captured_us
 from procs.vision.stereo_finder import StereoFinder
 from procs.vision.stereo_rig import StereoRig
 
@@ -27,6 +28,8 @@ class StereoObsConfig(Config):
     """Obstacles further ahead are not reported."""
     deviation_px: float = Setting(default=0.35, gt=0.0, le=50.0)
     """Standard deviation of a disparity."""
+    latency_s: float = Setting(default=0.0, ge=0.0, le=1.0)
+    """From the exposure of a frame until its camera publishes it, for cameras that do not state the exposure."""
 
 
 class StereoObs(Component):
@@ -46,8 +49,7 @@ class StereoObs(Component):
             return
         pixels = self.stereo_image.pixels
         percepts = self.stereo_obstacles.value = obstacle_percepts_t()
-        announced = self.stereo_image.announcement
-        percepts.capture_us = announced.value.capture_us or announced.header.time_us
+        percepts.capture_us = captured_us(self.stereo_image, self.config.latency_s)
         for found in [] if pixels is None else self._finder.find(pixels):
             obstacle = obstacle_t()
             obstacle.x_m, obstacle.y_m = float(found.x_m), float(found.y_m)

@@ -6,8 +6,9 @@ import cv2
 import numpy as np
 import pytest
 
+from fwk import Component, VisionMaster
 from fwk.model.errors import PlanError
-from fwk.testing import Bench, launch_plan, system_of
+from fwk.testing import Bench, MemorySystem, launch_plan, system_of
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
 from procs.model.ball import BALL
@@ -168,6 +169,23 @@ def test_picture_of_another_size_is_scaled() -> None:
     bench.iterate()
     (found,) = bench.port("stereo_obstacles").sent[-1].obstacles
     assert (found.x_m, found.y_m) == pytest.approx((2.0, 0.0), abs=0.15)
+
+
+class PlainPair(Component):
+    """Does not know when its frames were exposed."""
+
+    stage = "sensor_acquire"
+    stereo_image: VisionMaster
+
+    def loop(self) -> None:
+        self.stereo_image.publish(np.zeros((200, 800), np.uint8))
+
+
+def test_latency_of_a_camera_that_states_no_exposure_counts() -> None:
+    parts = {"cyan1/pair": PlainPair, "cyan1/stereo_obs": StereoObs}
+    run = MemorySystem(parts, settings={"cyan1/stereo_obs": {"latency_s": 0.08}})
+    run.tick(5)
+    assert run.newest("cyan1/stereo_obstacles").capture_us == run.newest("cyan1/stereo_image").header.time_us - 80_000
 
 
 def test_frame_without_usable_colours_is_refused() -> None:
