@@ -59,7 +59,7 @@ class CameraConfig(Config):
     """Part of the lines' paint that is missing."""
     clutter_1_m2: float | None = Setting(default=None, ge=0.0, le=10.0)
     """White specks on a square metre of the floor around the field."""
-    gaps_1_min: float | None = Setting(default=None, ge=0.0, le=600.0)
+    gaps_1_min: float | None = Setting(default=None, ge=0.0, le=1e6)
     """Interruptions in a minute, in which frames are lost in a row."""
     gap_s: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Mean duration of an interruption."""

@@ -64,17 +64,17 @@ class PerceptsConfig(Config):
     """Part of the visible robots whose team is not recognized."""
     line_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the line points that are not found."""
-    ball_phantoms_1_s: float | None = Setting(default=None, ge=0.0, le=100.0)
+    ball_phantoms_1_s: float | None = Setting(default=None, ge=0.0, le=1e6)
     """Balls a second that are not there."""
-    mouth_phantoms_1_s: float | None = Setting(default=None, ge=0.0, le=100.0)
+    mouth_phantoms_1_s: float | None = Setting(default=None, ge=0.0, le=1e6)
     """Balls a second that seem to lie in the own mouth."""
-    robot_phantoms_1_s: float | None = Setting(default=None, ge=0.0, le=100.0)
+    robot_phantoms_1_s: float | None = Setting(default=None, ge=0.0, le=1e6)
     """Robots a second that are not there."""
     line_phantoms: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the points that do not lie on a line."""
     tilt_sd_deg: float | None = Setting(default=None, ge=0.0, le=2.0)
     """Standard deviation of the mirror's uncalibrated tilt about either axis, constant in a match."""
-    gaps_1_min: float | None = Setting(default=None, ge=0.0, le=600.0)
+    gaps_1_min: float | None = Setting(default=None, ge=0.0, le=1e6)
     """Interruptions in a minute, in which frames are lost in a row."""
     gap_s: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Mean duration of an interruption."""

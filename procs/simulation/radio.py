@@ -21,7 +21,7 @@ class RadioConfig(Config):
     """Time from sending to arrival; a robot reads what has arrived when its next tick begins."""
     delay_jitter_s: float | None = Field(default=None, ge=0.0, le=10.0)
     """Largest further delay of a message."""
-    outages_1_min: float | None = Field(default=None, ge=0.0, le=600.0)
+    outages_1_min: float | None = Field(default=None, ge=0.0, le=1e6)
     """Interruptions of the link between two robots in a minute."""
     outage_s: float | None = Field(default=None, ge=0.0, le=600.0)
     """Mean duration of an interruption."""

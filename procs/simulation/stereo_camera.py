@@ -30,7 +30,7 @@ class StereoCameraConfig(Config):
     """Delay from the exposure until the frame is published."""
     noise_levels: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Standard deviation of the sensor noise, of 255."""
-    gaps_1_min: float | None = Setting(default=None, ge=0.0, le=600.0)
+    gaps_1_min: float | None = Setting(default=None, ge=0.0, le=1e6)
     """Interruptions in a minute, in which frames are lost in a row."""
     gap_s: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Mean duration of an interruption."""
