@@ -133,7 +133,7 @@ def test_pairs_of_other_sizes_find_robots_from_near_on(rig: StereoRig) -> None:
         assert (found.x_m, found.y_m) == pytest.approx((ahead_m, 0.1), abs=0.03 + 0.02 * ahead_m**2)
 
 
-def test_low_robot_and_large_ball_are_looked_for_at_their_heights() -> None:
+def test_heights_looked_at_fit_low_robots_and_large_balls() -> None:
     low = RobotModel(height_m=0.32)
     frame = StereoRenderer(RIG, Field(), Bodies.of(low, BALL)).render(Pose(0.0, 0.0, 0.0), [(2.5, 0.0)])
     bench = Bench(StereoObs, robot=low.model_dump())
