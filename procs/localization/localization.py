@@ -1,13 +1,18 @@
 """Self-localization: matches white points with the field's lines, and follows with odometry."""
 
+from typing import NamedTuple
+
 import numpy as np
 from pydantic import Field as Setting
+from pydantic import ValidationInfo, field_validator
 
 from fwk import Clock, Component, Config, Logger, Reads, Writes
 from lcmtypes.robot import imu_t, odometry_t
 from lcmtypes.soccer import line_points_t, pose_t
 from procs.localization.global_search import global_search
 from procs.localization.line_map import line_map
+from procs.localization.pose_filter import motion_errors
+from procs.localization.recent_motion import RecentMotion
 from procs.localization.self_localizer import LocalizerSettings, Motion, SelfLocalizer
 from procs.model.algebra import product
 from procs.model.expected_errors import EXPECTED
@@ -15,10 +20,24 @@ from procs.model.field import Field
 from procs.model.frames import Floats, rotation, wrap
 from procs.model.geometry import plausible
 from procs.model.realism import Realism
+from procs.vision.calibration import MirrorConfig
 
 _FASTEST_M_S = 8.0  # no robot drives faster
-_STALE_S = 0.5  # points captured before are taken as they are
-_NO_POINTS = line_points_t()
+_SHORT_S = 0.1  # for so long the velocity of the last tick tells the motion well enough
+_USUAL = MirrorConfig(size_px=360, view_angle_deg=86.0).mirror()  # the errors of localization are those of this one
+_AWAY_M = 2.0  # where mirrors are compared
+
+
+class SeenPoints(NamedTuple):
+    """White points (n), robot frame, where they are now."""
+
+    x_m: Floats
+    y_m: Floats
+    moved: tuple[float, float] = (0.0, 0.0)
+    """Standard deviations in m and rad of the motion since an exposure long ago."""
+
+
+_NOTHING = SeenPoints(np.empty(0), np.empty(0))
 
 
 class LocalizationConfig(Config):
@@ -27,23 +46,46 @@ class LocalizationConfig(Config):
     field: Field = Field()
     """Measures of the field."""
     start_x_m: float | None = Setting(None, frozen=True)
-    """Start of the robot if it is known, world frame; needs the other two."""
+    """Start of the robot if it is known, world frame; needs the other two. It counts at the beginning of a run only."""
     start_y_m: float | None = Setting(None, frozen=True)
     """See start_x_m."""
     start_heading_rad: float | None = Setting(None, frozen=True)
     """See start_x_m."""
     realism: Realism = "realistic"
     """Errors of the camera on which the pose's covariance counts: none, friendly, realistic or harsh."""
+    mirror: MirrorConfig = MirrorConfig()
+    """Calibration of the camera: the less pixels it has, the larger the errors."""
     reach_m: float = Setting(default=7.0, gt=0.5, le=12.0)
     """White points further away are not used."""
     points: int = Setting(default=100, ge=10)
     """Most white points of a frame that are used."""
-    search_period_s: float = Setting(default=0.5, gt=0.0)
+    search_period_s: float = Setting(default=0.5, gt=0.0, le=60.0)
     """From one search of the whole field to the next while the pose is known."""
     lost_score: float = Setting(default=0.4, gt=0.0, lt=1.0)
     """The pose is given up when the points fit worse than this for some frames; 1 is a perfect fit."""
     good_score: float = Setting(default=0.5, gt=0.0, lt=1.0)
     """A place is believed only if the points fit at least that well."""
+
+    @field_validator("start_heading_rad")
+    @classmethod
+    def _whole(cls, heading_rad: float | None, info: ValidationInfo) -> float | None:
+        """Refuses a part of a start, and one outside the walls."""
+        if {"field", "start_x_m", "start_y_m"} <= info.data.keys():
+            x_m, y_m, field = info.data["start_x_m"], info.data["start_y_m"], info.data["field"]
+            if len({value is None for value in (x_m, y_m, heading_rad)}) > 1:
+                raise ValueError("start_x_m, start_y_m and start_heading_rad belong together; give all three or none")
+            if x_m is not None and not field.in_field(x_m, y_m, field.border_m):
+                raise ValueError(f"start_x_m and start_y_m give ({x_m:g}, {y_m:g}), which is outside the walls")
+        return heading_rad
+
+    @field_validator("good_score")
+    @classmethod
+    def _better(cls, good_score: float, info: ValidationInfo) -> float:
+        """Refuses scores with which a robot is lost as soon as it is found."""
+        lost_score = info.data.get("lost_score", 0.0)
+        if good_score < lost_score:
+            raise ValueError(f"good_score of {good_score:g} should be at least lost_score, which is {lost_score:g}")
+        return good_score
 
 
 class Localization(Component):
@@ -65,33 +107,30 @@ class Localization(Component):
         global_search(line_map(config.field), config.reach_m)
 
     def init(self) -> None:
-        """Makes the table of the field's lines.
-
-        Raises:
-            ValueError: only a part of the start pose is given.
-        """
+        """Makes the table of the field's lines."""
         config = self.config
         start = (config.start_x_m, config.start_y_m, config.start_heading_rad)
         given = [value for value in start if value is not None]
-        if given and len(given) < 3:
-            raise ValueError(
-                f"{self.name}: start_x_m, start_y_m and start_heading_rad belong together; give all three or none"
-            )
         self._last: odometry_t | None = None
         self._yaw_rate_rad_s = 0.0
         self._turning_rad_s = 0.0  # mean since the last frame
         self._last_us = 0
-        self._localizer = SelfLocalizer(line_map(config.field), self._settings(), np.array(given) if given else None)
+        self._localizer = self._made(np.array(given) if given else None)
         self._updated_us = -1
+        self._recent = RecentMotion()
+        self._captured_us = 0  # exposure of the newest points
 
     def loop(self) -> None:
+        if self._updated_us < 0 and self.clock.tick > 1 + self.clock.every:
+            self._localizer = self._made(None)  # restarted: the robot has left its start
         knew = self._localizer.localized
-        points = self.line_points.value if self.line_points.refreshed else _NO_POINTS
         passed_s = self.clock.period_s if self._updated_us < 0 else self.clock.since_s(self._updated_us)
-        self._updated_us = self.clock.now_us
+        updated_us, self._updated_us = self._updated_us, self.clock.now_us
         motion = self._motion()
-        x_m, y_m = self._as_seen_now(points)
-        self._localizer.update(motion, self._compass_rad(), x_m, y_m, passed_s)
+        if 0 <= updated_us < self._updated_us:
+            self._recent.add(updated_us, self._updated_us, motion)
+        seen = self._as_seen_now(self.line_points.value) if self._sees_anew() else _NOTHING
+        self._localizer.update(motion, self._compass_rad(), seen.x_m, seen.y_m, passed_s, seen.moved)
         if knew != self._localizer.localized:
             here_m = "({:.2f}, {:.2f})".format(*self._localizer.pose[:2])
             self.log.info(f"localized at {here_m} m" if not knew else "lost, searching the whole field")
@@ -101,18 +140,24 @@ class Localization(Component):
         pose.localized = self._localizer.localized
         self.pose.write()
 
+    def _made(self, start: Floats | None) -> SelfLocalizer:
+        return SelfLocalizer(line_map(self.config.field), self._settings(), start)
+
     def config_changed(self) -> None:
         self._localizer.change(line_map(self.config.field), self._settings())
 
     def _settings(self) -> LocalizerSettings:
         config = self.config
+        pixel_m, _ = config.mirror.mirror().metres_per_px(_AWAY_M)
+        coarse = max(1.0, pixel_m / _USUAL.metres_per_px(_AWAY_M)[0])
         return LocalizerSettings(
             reach_m=config.reach_m,
             points=config.points,
             search_period_s=config.search_period_s,
             lost_score=config.lost_score,
             good_score=config.good_score,
-            errors=EXPECTED[config.realism],
+            correlation=coarse**2 * LocalizerSettings.correlation,
+            errors=EXPECTED[config.realism].in_coarser_picture(coarse),
         )
 
     def _compass_rad(self) -> float | None:
@@ -120,17 +165,36 @@ class Localization(Component):
         sound = self.imu.refreshed and plausible(imu.heading_rad, imu.yaw_rate_rad_s)
         return imu.heading_rad if sound else None
 
-    def _as_seen_now(self, points: line_points_t) -> tuple[Floats, Floats]:
-        """Returns the points (n each) in the frame of the robot that has driven on since their exposure."""
+    def _sees_anew(self) -> bool:
+        """Returns whether there are points of another exposure than before; the same ones tell nothing new."""
+        if not self.line_points.refreshed:
+            return False
+        capture_us = self.line_points.value.capture_us
+        if capture_us and capture_us == self._captured_us:
+            return False
+        self._captured_us = capture_us
+        return True
+
+    def _as_seen_now(self, points: line_points_t) -> SeenPoints:
+        """Returns the points in the frame of the robot that has driven on since their exposure.
+
+        Returns none if it is not known how far: wrong places of lines would be worse.
+        """
         seen_m = np.array((points.x_m, points.y_m)).T
         age_s = self.clock.since_s(points.capture_us) if points.capture_us else 0.0
-        if not len(seen_m) or not 0.0 < age_s <= _STALE_S or self._last is None:
-            return seen_m[:, 0], seen_m[:, 1]
-        turn_rad = age_s * self._turning_rad_s
+        if not len(seen_m) or age_s <= 0.0 or self._last is None:
+            return SeenPoints(seen_m[:, 0], seen_m[:, 1])
+        moved, turn_rad = (0.0, 0.0), age_s * self._turning_rad_s
         way_m = rotation(turn_rad / 2) @ (age_s * self._last.vx_m_s, age_s * self._last.vy_m_s)
+        if age_s > _SHORT_S:
+            way = self._recent.since(points.capture_us)
+            if way is None:
+                return _NOTHING
+            way_m, turn_rad = way
+            moved = motion_errors(float(np.hypot(*way_m)), turn_rad, age_s)
         with np.errstate(over="ignore", invalid="ignore"):  # values that cannot be are left out later
             seen_m = product(seen_m - way_m, rotation(turn_rad))
-        return seen_m[:, 0], seen_m[:, 1]
+        return SeenPoints(seen_m[:, 0], seen_m[:, 1], moved)
 
     def _motion(self) -> Motion:
         """Returns the way since the last frame by the wheels and the turn by the gyro, which slip does not affect."""

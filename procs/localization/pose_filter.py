@@ -35,10 +35,7 @@ class PoseFilter:
         way_m = rotation(middle_rad) @ (ahead_m, left_m)
         self.pose = moved(self.pose, way_m, turn_rad)
         shift = np.array(((1.0, 0.0, -way_m[1]), (0.0, 1.0, way_m[0]), (0.0, 0.0, 1.0)))
-        ticks = max(duration_s, 1e-3) / _TICK_S
-        # Errors are independent from tick to tick: their variances add up, whatever the length of a tick.
-        error_m = (_PATH_ERROR * math.hypot(ahead_m, left_m) / ticks + _STANDING_M) * math.sqrt(ticks)
-        error_rad = (_TURN_ERROR * abs(turn_rad) / ticks + _STANDING_RAD) * math.sqrt(ticks)
+        error_m, error_rad = motion_errors(math.hypot(ahead_m, left_m), turn_rad, duration_s)
         strain = self._strain_1_s * duration_s
         noise = strain[:, None] * strain
         noise[_AXES, _AXES] += error_m**2, error_m**2, error_rad**2
@@ -57,6 +54,16 @@ class PoseFilter:
         self._strain_1_s += share * (innovation / interval_s - self._strain_1_s)
         error, self.covariance = update(_NO_ERROR, self.covariance, innovation, R=covariance, H=_UNIT)
         self.pose = moved(self.pose, error[:2], float(error[2]))
+
+
+def motion_errors(way_m: float, turn_rad: float, duration_s: float) -> tuple[float, float]:
+    """Returns the standard deviations in m and rad of a motion by odometry that takes so long.
+
+    Errors are independent from tick to tick: their variances add up, whatever the length of a tick.
+    """
+    ticks = max(duration_s, 1e-3) / _TICK_S
+    error_m = (_PATH_ERROR * way_m / ticks + _STANDING_M) * math.sqrt(ticks)
+    return error_m, (_TURN_ERROR * abs(turn_rad) / ticks + _STANDING_RAD) * math.sqrt(ticks)
 
 
 def moved(pose: Floats, way_m: Floats, turn_rad: float) -> Floats:

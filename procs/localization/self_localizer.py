@@ -100,7 +100,15 @@ class SelfLocalizer:
         self._lines, self._settings = lines, settings
         self._search = global_search(lines, settings.reach_m)
 
-    def update(self, motion: Motion, compass_rad: float | None, x_m: Floats, y_m: Floats, duration_s: float) -> None:
+    def update(
+        self,
+        motion: Motion,
+        compass_rad: float | None,
+        x_m: Floats,
+        y_m: Floats,
+        duration_s: float,
+        moved: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
         """Takes the motion since the last update and the sensors' readings.
 
         Args:
@@ -109,6 +117,7 @@ class SelfLocalizer:
             x_m: white points (n) of a new frame, robot frame; empty without a new frame.
             y_m: see x_m.
             duration_s: time since the last update.
+            moved: standard deviations in m and rad of the motion by which points of an old exposure were moved.
         """
         self._since_frame_s += duration_s
         self._since_search_s += duration_s
@@ -121,16 +130,16 @@ class SelfLocalizer:
             return
         interval_s, self._since_frame_s = self._since_frame_s, 0.0
         if self.localized:
-            self._track(points, compass_rad, motion.speed_m_s, interval_s)
+            self._track(points, compass_rad, self._shared(motion.speed_m_s, moved), interval_s)
         elif compass_rad is not None:
             self._seek(points, compass_rad - self.compass_offset_rad, interval_s)
 
-    def _track(self, points: LinePoints, compass_rad: float | None, speed_m_s: float, interval_s: float) -> None:
+    def _track(self, points: LinePoints, compass_rad: float | None, shared: Floats, interval_s: float) -> None:
         settings = self._settings
         found = match(self._lines, points, self.pose[None])
         self.score += _share(interval_s, _SCORE_MEMORY_S) * (float(found.scores[0]) - self.score)
         if found.scores[0] > settings.lost_score:
-            self._filter.correct(found.poses[0], self._match_covariance(found, speed_m_s), interval_s)
+            self._filter.correct(found.poses[0], self._match_covariance(found, shared), interval_s)
         heading_rad = float(self.pose[2])
         contradicted = False
         if compass_rad is not None:
@@ -169,11 +178,15 @@ class SelfLocalizer:
         if decided is not None:
             self._found(decided.pose, _FOUND_DEVIATIONS, decided.score)
 
-    def _match_covariance(self, found: Matches, speed_m_s: float) -> Floats:
+    def _shared(self, speed_m_s: float, moved: tuple[float, float]) -> Floats:
+        """Returns the covariance (3, 3) of the errors that all points of a frame share."""
         errors = self._settings.errors
         shared = _diagonal(
             errors.frame_m + speed_m_s * errors.frame_s, errors.frame_rad + speed_m_s * errors.frame_rad_s_m
         )
+        return shared + _diagonal(*moved)
+
+    def _match_covariance(self, found: Matches, shared: Floats) -> Floats:
         weak = np.diag((1.0, 1.0, 1.0))  # so that a direction without lines has a finite, large variance
         return np.asarray(self._settings.correlation * np.linalg.inv(found.information[0] + weak) + shared)
 

@@ -36,6 +36,14 @@ class ExpectedErrors(BaseModel):
     wheel_noise_sqrt_s: NonNegativeFloat = 0.0112
     """Relative error of the way that a wheel measures in one second."""
 
+    def in_coarser_picture(self, factor: float) -> "ExpectedErrors":
+        """Returns the errors if a pixel covers so many times the ground that it usually does.
+
+        Those in pixels stay as they are, and those that last come from the tilt of the mirror.
+        """
+        grown = ("frame_m", "frame_rad", "frame_s", "frame_rad_s_m")
+        return self.model_copy(update={name: factor * getattr(self, name) for name in grown})
+
 
 EXPECTED: dict[Realism, ExpectedErrors] = {
     "none": ExpectedErrors(

@@ -16,20 +16,27 @@ SIDES = (-1.0, 1.0)
 Measure = Annotated[float, Setting(gt=0.0, le=100.0)]
 """A measure of the field in metres."""
 
-_LIMITS = {
-    "penalty_area_width_m": ("width_m", 1.0),
-    "penalty_area_depth_m": ("length_m", 0.5),
-    "goal_area_width_m": ("penalty_area_width_m", 1.0),
-    "goal_area_depth_m": ("penalty_area_depth_m", 1.0),
-    "corner_radius_m": ("width_m", 0.5),
-    "circle_diameter_m": ("width_m", 1.0),
-    "penalty_mark_distance_m": ("length_m", 0.5),
-    "line_width_m": ("goal_area_depth_m", 0.5),
-    "restart_offset_m": ("width_m", 0.5),
-    "goal_width_m": ("width_m", 1.0),
-    "goal_depth_m": ("border_m", 1.0),
+_LIMITS: dict[str, tuple[tuple[str, float], ...]] = {
+    "penalty_area_width_m": (("width_m", 1.0),),
+    "penalty_area_depth_m": (("length_m", 0.5),),
+    "goal_area_width_m": (("penalty_area_width_m", 1.0),),
+    "goal_area_depth_m": (("penalty_area_depth_m", 1.0),),
+    "corner_radius_m": (("width_m", 0.5),),
+    "circle_diameter_m": (("width_m", 1.0),),
+    "penalty_mark_distance_m": (("length_m", 0.5),),
+    "mark_diameter_m": (("circle_diameter_m", 0.5),),
+    "line_width_m": (
+        ("goal_area_depth_m", 0.5),
+        ("goal_area_width_m", 0.5),
+        ("corner_radius_m", 1.0),
+        ("circle_diameter_m", 0.5),
+    ),
+    "restart_offset_m": (("width_m", 0.5),),
+    "goal_width_m": (("width_m", 1.0),),
+    "goal_depth_m": (("border_m", 1.0),),
+    "post_diameter_m": (("goal_width_m", 0.5),),
 }
-"""Measure to the larger one, stated before it, of which it is a share at most."""
+"""Measure to the larger ones, stated before it, of which it is a share at most."""
 
 
 class Point(NamedTuple):
@@ -108,11 +115,13 @@ class Field(BaseModel):
     def _fits(cls, measure_m: float, info: ValidationInfo) -> float:
         """Refuses measures that do not fit into others, which are checked before them."""
         assert info.field_name
-        larger, share = _LIMITS[info.field_name]
-        if larger in info.data and measure_m > share * info.data[larger]:
-            part = larger if share == 1.0 else f"half of {larger}"
-            largest_m = share * info.data[larger]
-            raise ValueError(f"{info.field_name} of {measure_m:g} m should be at most {part}, which is {largest_m:g} m")
+        for larger, share in _LIMITS[info.field_name]:
+            if larger in info.data and measure_m > share * info.data[larger]:
+                part = larger if share == 1.0 else f"half of {larger}"
+                largest_m = share * info.data[larger]
+                raise ValueError(
+                    f"{info.field_name} of {measure_m:g} m should be at most {part}, which is {largest_m:g} m"
+                )
         return measure_m
 
     @property

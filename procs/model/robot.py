@@ -39,6 +39,12 @@ class RobotModel(BaseModel):
     """The front is cut off between these angles to the left and the right of forward."""
 
     @property
+    def marker_m(self) -> tuple[float, float]:
+        """Heights of the lower and the upper edge of the team marker, in metres. Rule book of 2016: 0.30 to 0.60 m."""
+        upper_m = min(0.5, self.height_m)
+        return 0.68 * upper_m, upper_m
+
+    @property
     def mouth_m(self) -> float:
         """Distance from the robot's middle to the plane of the mouth, in metres."""
         return self.radius_m * math.cos(math.radians(self.mouth_half_angle_deg))

@@ -12,7 +12,7 @@ from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
 from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
-from procs.model.robot import ROBOT, RobotModel
+from procs.model.robot import ROBOT, RobotModel, team_in
 from procs.simulation.camera_errors import PRESETS, CameraErrors
 from procs.simulation.delayed_truth import DelayedTruth, Exposure
 from procs.simulation.gaps import Gaps
@@ -21,7 +21,7 @@ from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.sensor_noise import SensorNoise
 from procs.simulation.rendering.shapes import Bodies
 from procs.vision.calibration import MirrorConfig
-from procs.vision.colours import COLOURS, MAGENTA
+from procs.vision.colours import BLACK, COLOURS
 
 
 class CameraConfig(Config):
@@ -59,9 +59,9 @@ class CameraConfig(Config):
     """Part of the lines' paint that is missing."""
     clutter_1_m2: float | None = Setting(default=None, ge=0.0, le=10.0)
     """White specks on a square metre of the floor around the field."""
-    gaps_1_min: float | None = Setting(default=None, ge=0.0)
+    gaps_1_min: float | None = Setting(default=None, ge=0.0, le=1e6)
     """Interruptions in a minute, in which frames are lost in a row."""
-    gap_s: float | None = Setting(default=None, ge=0.0)
+    gap_s: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Mean duration of an interruption."""
     field: Field = Field()
     """Measures of the field."""
@@ -119,7 +119,8 @@ class Camera(Component):
         self._noise.cast = 1.0 + errors.cast * self._casts
 
     def _scene(self, seen: Exposure) -> Scene:
-        others = [(robot.x_m, robot.y_m, COLOURS.get(robot.team, MAGENTA)) for robot in seen.others]
+        # A robot that is not a player has no marker: a black one on a black body.
+        others = [(robot.x_m, robot.y_m, COLOURS.get(team_in(robot), BLACK)) for robot in seen.others]
         own, truth = seen.own, seen.truth
         ball_m = (truth.ball_x_m, truth.ball_y_m, truth.ball_z_m + self.config.ball.radius_m)
         return Scene(Pose(own.x_m, own.y_m, own.heading_rad), others, ball_m if plausible(*ball_m) else None)
@@ -132,7 +133,7 @@ class Camera(Component):
 
 
 def _bodies(config: CameraConfig) -> Bodies:
-    return Bodies(config.robot.radius_m, config.robot.height_m, config.ball.radius_m)
+    return Bodies.of(config.robot, config.ball)
 
 
 def _wear(errors: CameraErrors) -> Wear:

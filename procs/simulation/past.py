@@ -5,7 +5,7 @@ from collections import deque
 
 from lcmtypes.soccer import ground_truth_t, true_robot_t
 
-_KEPT = 64  # messages
+_KEPT_US = 1_200_000  # longer than the longest latency
 _JUMP_M_S = 20.0  # what moves faster was placed, and is at either place, not between them
 
 
@@ -13,11 +13,14 @@ class Past:
     """The last messages of the simulator; between two of them robots and ball move straight."""
 
     def __init__(self) -> None:
-        self._kept: deque[ground_truth_t] = deque(maxlen=_KEPT)
+        self._kept: deque[ground_truth_t] = deque()
 
     def add(self, truth: ground_truth_t) -> None:
         """Takes the newest message."""
         self._kept.append(truth)
+        oldest_us = truth.header.time_us - _KEPT_US
+        while len(self._kept) > 1 and self._kept[1].header.time_us <= oldest_us:
+            self._kept.popleft()
 
     def at(self, time_us: int) -> ground_truth_t:
         """Returns the world at a time: the oldest known one for times before.

@@ -21,7 +21,7 @@ from procs.model.expected_errors import EXPECTED
 from procs.model.field import Field, Point
 from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
-from procs.model.robot import ROBOT, TEAM_NUMBERS, RobotModel
+from procs.model.robot import ROBOT, TEAM_NUMBERS, RobotModel, team_in
 from procs.simulation.ball_sight import LEAST_VISIBLE, BallSight, candidate
 from procs.simulation.delayed_truth import DelayedTruth
 from procs.simulation.gaps import Gaps
@@ -46,15 +46,15 @@ class PerceptsConfig(Config):
     """Standard deviation by which the standing robot's mirror shakes, in pixels."""
     shake_px_per_m_s: float | None = Setting(default=None, ge=0.0, le=3.0)
     """Growth of that deviation with each m/s of the robot, in pixels."""
-    ball_px: float | None = Setting(default=None, ge=0.0)
+    ball_px: float | None = Setting(default=None, ge=0.0, le=50.0)
     """Standard deviation of the ball's place, in pixels."""
-    ball_area_px: float | None = Setting(default=None, ge=0.0)
+    ball_area_px: float | None = Setting(default=None, ge=0.0, le=50.0)
     """Relative standard deviation of the ball's area in the picture, times its radius in pixels."""
-    robot_along_px: float | None = Setting(default=None, ge=0.0)
+    robot_along_px: float | None = Setting(default=None, ge=0.0, le=50.0)
     """Standard deviation of a robot's place along the ray from the camera, in pixels."""
-    robot_across_px: float | None = Setting(default=None, ge=0.0)
+    robot_across_px: float | None = Setting(default=None, ge=0.0, le=50.0)
     """The same across the ray."""
-    line_px: float | None = Setting(default=None, ge=0.0)
+    line_px: float | None = Setting(default=None, ge=0.0, le=50.0)
     """Standard deviation of a point on a line, along and across the ray, in pixels."""
     ball_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the frames in which a visible ball is not found."""
@@ -64,19 +64,19 @@ class PerceptsConfig(Config):
     """Part of the visible robots whose team is not recognized."""
     line_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the line points that are not found."""
-    ball_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
+    ball_phantoms_1_s: float | None = Setting(default=None, ge=0.0, le=1e6)
     """Balls a second that are not there."""
-    mouth_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
+    mouth_phantoms_1_s: float | None = Setting(default=None, ge=0.0, le=1e6)
     """Balls a second that seem to lie in the own mouth."""
-    robot_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
+    robot_phantoms_1_s: float | None = Setting(default=None, ge=0.0, le=1e6)
     """Robots a second that are not there."""
     line_phantoms: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the points that do not lie on a line."""
     tilt_sd_deg: float | None = Setting(default=None, ge=0.0, le=2.0)
     """Standard deviation of the mirror's uncalibrated tilt about either axis, constant in a match."""
-    gaps_1_min: float | None = Setting(default=None, ge=0.0)
+    gaps_1_min: float | None = Setting(default=None, ge=0.0, le=1e6)
     """Interruptions in a minute, in which frames are lost in a row."""
-    gap_s: float | None = Setting(default=None, ge=0.0)
+    gap_s: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Mean duration of an interruption."""
     field: Field = Field()
     """Measures of the field."""
@@ -84,15 +84,15 @@ class PerceptsConfig(Config):
     """Geometry of all robots."""
     ball: BallModel = BALL
     """Size of the ball."""
-    rays: int = Setting(default=180, ge=16, le=720)
+    rays: int = Setting(default=180, ge=60, le=720)
     """Scan lines around the robot, as the detector of lines has them."""
     ring_distances_m: tuple[PositiveFloat, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
     """Radii of the rings, as the detector of lines has them."""
-    reach_m: float = Setting(default=7.0, gt=0.5)
-    """Largest distance of robots and line points."""
-    ball_reach_m: float = Setting(default=8.0, gt=0.0)
-    """Largest distance of a ball."""
-    most_points: int = Setting(default=150, ge=1)
+    reach_m: float = Setting(default=7.0, gt=0.5, le=20.0)
+    """Largest distance of robots and line points; it is less where the mirror shows less."""
+    ball_reach_m: float = Setting(default=8.0, gt=0.0, le=20.0)
+    """Largest distance of a ball; it is less where the mirror shows less."""
+    most_points: int = Setting(default=150, ge=1, le=10_000)
     """Line points sent at most."""
 
 
@@ -137,7 +137,7 @@ class Percepts(Component):
         others = [(robot.x_m, robot.y_m) for robot in seen.others]
         robots_m = _seen_from(own, np.array(others).reshape(-1, 2))
         self._see_ball(own, seen.truth, robots_m, (forward, left), passed_s)
-        teams = [TEAM_NUMBERS.get(robot.team, obstacle_t.TEAM_UNKNOWN) for robot in seen.others]
+        teams = [TEAM_NUMBERS.get(team_in(robot), obstacle_t.TEAM_UNKNOWN) for robot in seen.others]
         self._see_robots(robots_m, teams, (forward, left), passed_s)
         self._see_lines(own, robots_m, (forward, left))
         for port in (self.ball_percept, self.obstacle_percepts, self.line_points):
@@ -152,9 +152,10 @@ class Percepts(Component):
         self._mirror = self.config.mirror.mirror()
         self._tilt_px = _TILT_SHARE * self._mirror.scale_px * math.radians(self._errors.tilt_sd_deg) * self._tilts
         self._stated = EXPECTED[self.config.realism]
-        self._ball_sight = BallSight(
-            self._mirror, self.config.ball.radius_m, self.config.ball_reach_m, self._errors, self._stated.ball_px
-        )
+        self._reach_m = min(self.config.reach_m, self._mirror.reach_m())
+        radius_m = self.config.ball.radius_m
+        self._ball_reach_m = min(self.config.ball_reach_m, self._mirror.reach_m(radius_m))
+        self._ball_sight = BallSight(self._mirror, radius_m, self._ball_reach_m, self._errors, self._stated.ball_px)
         self._lines = line_scan(self.config.field)
 
     def _see_ball(
@@ -169,7 +170,7 @@ class Percepts(Component):
             covered = 0.0 if truth.ball_z_m > self.config.robot.height_m else hidden_part
             percept = self._ball_sight.found(at_m, truth.ball_z_m, 1.0 - covered, shake_px, noise)
         if phantom < -math.expm1(-errors.ball_phantoms_1_s * passed_s):
-            range_m, angle_rad = 0.5 + distance * (self.config.ball_reach_m - 0.5), direction * math.tau
+            range_m, angle_rad = 0.5 + distance * (self._ball_reach_m - 0.5), direction * math.tau
             x_m, y_m = range_m * math.cos(angle_rad), range_m * math.sin(angle_rad)
             ghost = self._ball_sight.on_ground(x_m, y_m, LEAST_VISIBLE)
             if percept.visible:
@@ -183,7 +184,7 @@ class Percepts(Component):
 
     def _see_robots(self, robots_m: Floats, teams: list[int], shake_px: tuple[float, float], passed_s: float) -> None:
         errors, config = self._errors, self.config
-        near = np.hypot(robots_m[:, 0], robots_m[:, 1]) <= config.reach_m
+        near = np.hypot(robots_m[:, 0], robots_m[:, 1]) <= self._reach_m
         found_m = robots_m[near]
         known = self._marker_rng.random(len(found_m)) >= errors.team_missed
         luck, noise = self.rng.random(len(found_m)), self.rng.standard_normal((2, len(found_m)))
@@ -195,7 +196,7 @@ class Percepts(Component):
         )[seen]
         colours = np.where(known, np.array(teams, int)[near], obstacle_t.TEAM_UNKNOWN)[seen].tolist()
         if phantom < -math.expm1(-errors.robot_phantoms_1_s * passed_s):
-            range_m, angle_rad = 0.6 + distance * (config.reach_m - 0.6), direction * math.tau
+            range_m, angle_rad = 0.6 + distance * (self._reach_m - 0.6), direction * math.tau
             moved_m = np.vstack((moved_m, range_m * np.array((math.cos(angle_rad), math.sin(angle_rad)))))
             colours.append(obstacle_t.TEAM_UNKNOWN)
         percepts = self.obstacle_percepts.value = obstacle_percepts_t()
@@ -210,7 +211,7 @@ class Percepts(Component):
         errors, config = self._errors, self.config
         place = Point(own.x_m, own.y_m)
         found_m = self._lines.points(
-            place, own.heading_rad, config.rays, config.ring_distances_m, config.reach_m, self.rng
+            place, own.heading_rad, config.rays, config.ring_distances_m, self._reach_m, self.rng
         )
         luck, noise = self.rng.random((2, len(found_m))), self.rng.standard_normal((2, len(found_m)))
         found_m[luck[1] < errors.line_phantoms] *= 0.8

@@ -17,13 +17,13 @@ class RadioConfig(Config):
     """Deviation of the radio from the ideal: none, friendly, realistic or harsh. Non-null settings override it."""
     loss: float | None = Field(default=None, ge=0.0, le=1.0)
     """Probability that a message does not reach a mate, independent for each mate; 1 switches the radio off."""
-    delay_s: float | None = Field(default=None, ge=0.0)
+    delay_s: float | None = Field(default=None, ge=0.0, le=10.0)
     """Time from sending to arrival; a robot reads what has arrived when its next tick begins."""
-    delay_jitter_s: float | None = Field(default=None, ge=0.0)
+    delay_jitter_s: float | None = Field(default=None, ge=0.0, le=10.0)
     """Largest further delay of a message."""
-    outages_1_min: float | None = Field(default=None, ge=0.0)
+    outages_1_min: float | None = Field(default=None, ge=0.0, le=1e6)
     """Interruptions of the link between two robots in a minute."""
-    outage_s: float | None = Field(default=None, ge=0.0)
+    outage_s: float | None = Field(default=None, ge=0.0, le=600.0)
     """Mean duration of an interruption."""
     bandwidth_bit_s: float | None = Field(default=None, ge=0.0)
     """Rate of the team's channel, to which messages beyond it are lost; 0: no limit. Rule book of 2016: 2.2 Mbit/s."""

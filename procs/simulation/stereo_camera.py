@@ -30,9 +30,9 @@ class StereoCameraConfig(Config):
     """Delay from the exposure until the frame is published."""
     noise_levels: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Standard deviation of the sensor noise, of 255."""
-    gaps_1_min: float | None = Setting(default=None, ge=0.0)
+    gaps_1_min: float | None = Setting(default=None, ge=0.0, le=1e6)
     """Interruptions in a minute, in which frames are lost in a row."""
-    gap_s: float | None = Setting(default=None, ge=0.0)
+    gap_s: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Mean duration of an interruption."""
     field: Field = Field()
     """Measures of the field."""
@@ -73,5 +73,4 @@ class StereoCamera(Component):
     def _apply_settings(self) -> None:
         config = self.config
         self._errors = chosen(PRESETS[config.realism], config)
-        bodies = Bodies(config.robot.radius_m, config.robot.height_m, config.ball.radius_m)
-        self._renderer = StereoRenderer(config.rig, config.field, bodies)
+        self._renderer = StereoRenderer(config.rig, config.field, Bodies.of(config.robot, config.ball))

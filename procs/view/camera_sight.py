@@ -4,6 +4,7 @@ The calibration comes from the settings of the components that share it: the cam
 """
 
 import math
+from dataclasses import replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -57,7 +58,7 @@ class _MirrorLens:
 
     def __init__(self, calibration: dict[str, Any], width_px: int, height_px: int) -> None:
         size_px = min(width_px, height_px)
-        self.mirror = MirrorConfig(**{**calibration, "size_px": size_px}).mirror()
+        self.mirror = replace(MirrorConfig(**calibration).mirror(), size_px=size_px)
         self.shift_px = np.array(((width_px - size_px) // 2, (height_px - size_px) // 2), np.float64)
 
     def project(self, points_m: Floats) -> Floats:

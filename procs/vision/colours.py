@@ -1,10 +1,11 @@
 """Colours of the robot soccer world: as they are painted, and as ranges by which they are told apart."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field, ValidationInfo
 
 Picture = NDArray[np.uint8]
 """Height x width x 3, blue green red."""
@@ -21,7 +22,8 @@ COLOURS: dict[str, Bgr] = {"cyan": CYAN, "magenta": MAGENTA}
 """Colour of each team's markers."""
 FLOOR: Bgr = (124, 120, 112)
 
-Hsv = tuple[int, int, int]
+_Level = Annotated[int, Field(ge=0, le=255)]
+Hsv = tuple[Annotated[int, Field(ge=0, le=179)], _Level, _Level]
 """Hue 0..179 (half degrees), saturation and value 0..255, as OpenCV has them."""
 
 
@@ -33,9 +35,23 @@ class ColourRange(NamedTuple):
 
     def mask(self, hsv: Picture) -> Mask:
         """Returns a mask of the pixels of that colour, of a picture in HSV, height x width x 3."""
+        if not hsv.size:
+            return np.zeros(hsv.shape[:2], bool)
         return np.asarray(cv2.inRange(hsv, np.array(self.low), np.array(self.high)) > 0)
 
 
 def to_hsv(pixels: Picture) -> Picture:
-    """Returns the picture as hue, saturation and value."""
+    """Returns the picture as hue, saturation and value; it may have no pixels."""
+    if not pixels.size:
+        return pixels
     return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2HSV), np.uint8)
+
+
+def not_below(high: Hsv, info: ValidationInfo) -> Hsv:
+    """Refuses a setting `NAME_high`, the greatest values of a colour, that is below `NAME_low` in one of them."""
+    low_name = str(info.field_name).removesuffix("high") + "low"
+    low = info.data.get(low_name, (0, 0, 0))  # missing if it is a mistake itself
+    for part, least, greatest in zip(("hue", "saturation", "value"), low, high, strict=True):
+        if greatest < least:
+            raise ValueError(f"{part} {greatest} is less than that of {low_name}, {least}; no colour is between them")
+    return high

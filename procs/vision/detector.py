@@ -6,9 +6,9 @@ from pydantic import Field
 
 from fwk import Component, Config, Image
 from procs.model.realism import Realism
-from procs.model.units import US_PER_S
 from procs.vision.calibration import MirrorConfig
 from procs.vision.colours import Picture
+from procs.vision.exposure import captured_us
 
 
 class DetectorConfig(Config):
@@ -38,8 +38,7 @@ class Detector(Component, ABC):
     @property
     def capture_us(self) -> int:
         """Logical time of the newest frame's exposure; 0 if it is not known."""
-        stated_us = self.image.announcement.value.capture_us
-        return stated_us or max(0, self.image.announcement.header.time_us - round(self.config.latency_s * US_PER_S))
+        return captured_us(self.image, self.config.latency_s)
 
     def loop(self) -> None:
         if not self.image.changed:

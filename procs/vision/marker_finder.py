@@ -10,7 +10,7 @@ from procs.model.robot import ROBOT
 from procs.vision.colours import ColourRange, Picture, to_hsv
 from procs.vision.mirror import Mirror
 
-_UP_M = np.repeat((0.38, 0.42, 0.46), 3)  # heights of the samples; the rules have markers there
+_UP = np.repeat((0.25, 0.5, 0.75), 3)  # heights of the samples, as shares of the way up from the marker's lower edge
 _ACROSS = np.tile((-0.4, 0.0, 0.4), 3)  # places of the samples across the body, as shares of its radius
 _LEAST = 0.5  # share of the samples that must have the colour
 
@@ -23,6 +23,8 @@ class MarkerFinder:
     colours: tuple[ColourRange, ...]
     """One for each team."""
     radius_m: float = ROBOT.radius_m
+    marker_m: tuple[float, float] = ROBOT.marker_m
+    """Heights of the lower and the upper edge of the markers."""
 
     def find(self, pixels: Picture, places_m: Sequence[tuple[float, float]]) -> list[int]:
         """Returns the team of each robot: the number of its colour, counted from 1, or 0 if none is seen.
@@ -49,5 +51,6 @@ class MarkerFinder:
         near_m = places_m - ahead * self.radius_m
         points = np.empty((len(places_m), len(_ACROSS), 3))
         points[:, :, :2] = near_m[:, None] + (_ACROSS * self.radius_m)[:, None] * aside[:, None]
-        points[:, :, 2] = _UP_M
+        lower_m, upper_m = self.marker_m
+        points[:, :, 2] = lower_m + _UP * (upper_m - lower_m)
         return points

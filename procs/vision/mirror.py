@@ -58,7 +58,10 @@ class Mirror:
         return self._pixels(rays[:, :2] / spread[:, None])
 
     def sphere(self, centre_m: tuple[float, float, float], radius_m: float) -> tuple[float, float, float]:
-        """Column, row and radius in pixels of the circle as which a sphere appears."""
+        """Column, row and radius in pixels of the circle as which a sphere appears.
+
+        A sphere straight above the viewpoint is outside the circle; the radius is negative then.
+        """
         ray = product(np.array([centre_m]) - (0.0, 0.0, self.height_m), self._from_mirror)[0]
         distance_m = math.hypot(*ray)
         sine = min(radius_m / distance_m, 1.0)
@@ -67,8 +70,10 @@ class Mirror:
         return float(column), float(row), self.scale_px * sine / spread
 
     def shows_all(self, column: float, row: float, radius_px: float) -> bool:
-        """Returns whether a circle lies within the mirror's round picture."""
-        return math.hypot(column - self.centre_px, row - self.centre_px) + radius_px < self.size_px / 2
+        """Returns whether a circle lies within the mirror's round picture; one without a positive radius is none."""
+        return (
+            radius_px > 0.0 and math.hypot(column - self.centre_px, row - self.centre_px) + radius_px < self.size_px / 2
+        )
 
     def centre_of(self, column: float, row: float, radius_px: float, radius_m: float) -> tuple[float, float, float]:
         """Returns the centre (x, y, z) of a sphere of known radius that appears as this circle; undoes `sphere`."""
@@ -95,6 +100,11 @@ class Mirror:
     def radius_px(self, distance_m: float) -> float:
         """Returns the radius in the picture at which ground at that distance appears, without tilt."""
         return self.scale_px * math.tan(math.atan2(distance_m, self.height_m) / 2)
+
+    def reach_m(self, plane_m: float = 0.0) -> float:
+        """Returns the largest distance at which the picture shows the level plane at height `plane_m`, without tilt."""
+        level = self.view_angle_rad >= math.pi / 2
+        return math.inf if level else (self.height_m - plane_m) * math.tan(self.view_angle_rad)
 
     def metres_per_px(self, distance_m: float) -> tuple[float, float]:
         """Ground covered by one pixel at that distance, along the ray and across it."""

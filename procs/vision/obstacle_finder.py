@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import reduce
 from operator import and_, or_
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,14 @@ from procs.vision.uncertainty import ground_covariance
 
 _BODY_SAMPLES = 4  # so many black samples in a row are a body
 _COVERED = 0.75  # share of rays that are black from their beginning: a covered camera, not robots all around
+_BETWEEN_RAYS = 0.23  # standard deviation of a middle across the ray, as a part of the way between two rays
+_BESIDE_RAYS = 2  # rays from one body to the next if nothing is between them
+_WHOLE = 0.3  # share of half of its width that may be missing of a robot that counts as seen wholly
+_LOST = 0.2  # standard deviation of a middle across the ray, as a share of the width that is hidden
 _FEET_SAMPLES = 3  # carpet must be visible this close before it, otherwise the near edge is hidden
+
+
+_NOWHERE = np.empty(0, np.intp), np.empty((0, 2))
 
 
 @dataclass(frozen=True)
@@ -28,6 +36,16 @@ class Obstacle:
     x_m: float
     y_m: float
     covariance_m2: Floats
+
+
+class _Group(NamedTuple):
+    """Points (n, 2) at the feet of one or more robots, counter-clockwise."""
+
+    edges_m: Floats
+    right_hidden: bool = False
+    """Something nearer hides the end that is the first."""
+    left_hidden: bool = False
+    """The same of the last."""
 
 
 @dataclass(frozen=True)
@@ -41,19 +59,22 @@ class ObstacleFinder:
     """Colours of the carpet and its lines."""
     radius_m: float = ROBOT.radius_m
     deviation_px: tuple[float, float] = (0.5, 0.8)
-    """Standard deviation of the found middle in the picture, along and across the ray."""
+    """Standard deviation of the found middle in the picture, along and across the ray; the rays' distance from each
+    other may make it larger."""
     least_rays: int = 2
     """Rays that must meet a robot."""
 
     def find(self, hsv: Picture) -> list[Obstacle]:
         """Returns all robots in a scan (rays, samples, 3) in HSV, counter-clockwise."""
-        edges_m = self._near_edges(hsv)
+        rays, edges_m = self._near_edges(hsv)
         if len(edges_m) < self.least_rays:
             return []
-        return [self._obstacle(part) for group in self._groups(edges_m) for part in self._robots(group)]
+        return [self._obstacle(part) for group in self._groups(rays, edges_m) for part in self._robots(group)]
 
-    def _near_edges(self, hsv: Picture) -> Floats:
-        """Points (n, 2) at which rays meet the feet of something black, in the order of the rays."""
+    def _near_edges(self, hsv: Picture) -> tuple[NDArray[np.intp], Floats]:
+        """Returns the rays (n) that meet something black, in order, and the points (n, 2) of its feet."""
+        if hsv.shape[1] < _BODY_SAMPLES:
+            return _NOWHERE
         black = self.black.mask(hsv)
         standing = reduce(or_, (colour.mask(hsv) for colour in self.carpet))
         last = black.shape[1] - _BODY_SAMPLES + 1
@@ -61,40 +82,75 @@ class ObstacleFinder:
         rays = np.flatnonzero(body.any(axis=1))
         starts = body[rays].argmax(axis=1)
         if (starts == 0).sum() > _COVERED * len(body):
-            return np.empty((0, 2))
+            return _NOWHERE
         seen = (starts == 0) | _any_before(standing, rays, starts)
         rays, starts = rays[seen], starts[seen]
-        return np.asarray((self.star.ground_m[rays, starts] + self.star.ground_m[rays, np.maximum(starts - 1, 0)]) / 2)
+        edges_m = (self.star.ground_m[rays, starts] + self.star.ground_m[rays, np.maximum(starts - 1, 0)]) / 2
+        return rays, np.asarray(edges_m)
 
-    def _groups(self, edges_m: Floats) -> list[Floats]:
-        """Edge points that may belong together, (n, 2) each: neighbours with a gap that a ball could hide."""
+    def _groups(self, rays: NDArray[np.intp], edges_m: Floats) -> list[_Group]:
+        """Edge points that may belong together: neighbours with a gap that a ball could hide."""
         gaps_m = np.hypot(*(edges_m - np.roll(edges_m, 1, axis=0)).T)  # the first with the last: the rays go around
-        blur_m, _ = self.mirror.metres_per_px_each(np.hypot(edges_m[:, 0], edges_m[:, 1]))
+        ranges_m = np.hypot(edges_m[:, 0], edges_m[:, 1])
+        blur_m, _ = self.mirror.metres_per_px_each(ranges_m)
         breaks = np.flatnonzero(gaps_m > 1.4 * self.radius_m + blur_m)
         if len(breaks) == 0:
-            return [edges_m]
-        return np.split(np.roll(edges_m, -breaks[0], axis=0), breaks[1:] - breaks[0])
+            return [_Group(edges_m)]
+        beside = (rays - np.roll(rays, 1))[breaks] % len(self.star.ground_m) <= _BESIDE_RAYS
+        nearer_before = (np.roll(ranges_m, 1) < ranges_m)[breaks]
+        right_hidden = (beside & nearer_before).tolist()
+        left_hidden = np.roll(beside & ~nearer_before, -1).tolist()
+        parts = np.split(np.roll(edges_m, -breaks[0], axis=0), breaks[1:] - breaks[0])
+        return [_Group(*each) for each in zip(parts, right_hidden, left_hidden, strict=True)]
 
-    def _robots(self, group: Floats) -> Iterator[Floats]:
+    def _robots(self, group: _Group) -> Iterator[_Group]:
         """Divides a group that is too wide for one robot evenly."""
-        if len(group) < self.least_rays:
+        edges_m = group.edges_m
+        if len(edges_m) < self.least_rays:
             return
-        width_rad = _turn(group[0], group[-1])
-        range_m = float(np.hypot(group[:, 0], group[:, 1]).mean())
+        width_rad = _turn(edges_m[0], edges_m[-1])
+        range_m = float(np.hypot(edges_m[:, 0], edges_m[:, 1]).mean())
         expected_rad = 2 * math.asin(min(self.radius_m / (range_m + self.radius_m), 1.0))
-        most = len(group) // self.least_rays
+        most = len(edges_m) // self.least_rays
         parts = min(max(round(width_rad / expected_rad), 1), most)
-        yield from np.array_split(group, parts) if parts > 1 else [group]
+        if parts == 1:
+            yield group
+            return
+        for number, part in enumerate(np.array_split(edges_m, parts)):
+            yield _Group(part, number == 0 and group.right_hidden, number == parts - 1 and group.left_hidden)
 
-    def _obstacle(self, edges_m: Floats) -> Obstacle:
-        middle_rad = math.atan2(*edges_m[0, ::-1]) + _turn(edges_m[0], edges_m[-1]) / 2
+    def _obstacle(self, group: _Group) -> Obstacle:
+        edges_m, step_rad = group.edges_m, math.tau / len(self.star.ground_m)
+        seen_rad = _turn(edges_m[0], edges_m[-1])
+        begin_rad = math.atan2(*edges_m[0, ::-1])
+        away_m = self._away_m(edges_m, begin_rad + seen_rad / 2)
+        middle_rad, lost_rad = seen_rad / 2, 0.0
+        if group.right_hidden or group.left_hidden:
+            for _ in range(2):  # how wide a robot should be depends on its distance, which depends on its middle
+                half_rad = math.asin(min(self.radius_m / max(away_m, 1e-6), 1.0))
+                lost_rad = 2 * half_rad - seen_rad - step_rad
+                if lost_rad < _WHOLE * half_rad:
+                    lost_rad = 0.0
+                    break
+                if group.right_hidden != group.left_hidden:
+                    seen = half_rad - step_rad / 2  # from the edge that is seen to the middle
+                    middle_rad = seen_rad - seen if group.right_hidden else seen
+                    away_m = self._away_m(edges_m, begin_rad + middle_rad)
+        middle_rad += begin_rad
+        x_m, y_m = away_m * math.cos(middle_rad), away_m * math.sin(middle_rad)
+        along_px, across_px = self.deviation_px
+        px_rad = self.mirror.radius_px(abs(away_m))
+        across_px = max(across_px, _BETWEEN_RAYS * step_rad * px_rad)  # pixels do not help where rays are further apart
+        across_px = math.hypot(across_px, _LOST * lost_rad * px_rad)
+        return Obstacle(x_m, y_m, ground_covariance(self.mirror, x_m, y_m, along_px, across_px))
+
+    def _away_m(self, edges_m: Floats, middle_rad: float) -> float:
+        """Returns the distance of a robot whose middle is in a direction."""
         ahead_x, ahead_y = math.cos(middle_rad), math.sin(middle_rad)
         edge_x_m, edge_y_m = edges_m.T
         along_m = edge_x_m * ahead_x + edge_y_m * ahead_y
         across_m = edge_y_m * ahead_x - edge_x_m * ahead_y
-        away_m = median(along_m + np.sqrt(np.maximum(self.radius_m**2 - across_m**2, 0.0)))
-        x_m, y_m = away_m * ahead_x, away_m * ahead_y
-        return Obstacle(x_m, y_m, ground_covariance(self.mirror, x_m, y_m, *self.deviation_px))
+        return median(along_m + np.sqrt(np.maximum(self.radius_m**2 - across_m**2, 0.0)))
 
 
 def _any_before(mask: Mask, rays: NDArray[np.intp], starts: NDArray[np.intp]) -> Mask:

@@ -9,20 +9,31 @@ from fwk import Clock, Component, Config, Reads, Writes
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
 from procs.model.covariance import is_covariance
+from procs.model.geometry import plausible
+from procs.model.robot import ROBOT, RobotModel
 from procs.model.units import US_PER_S
+
+_SAME = 0.8  # of a robot's width: the middles of two robots are further apart
 
 
 class ObstacleFusionConfig(Config):
     """Settings of the fusion."""
 
-    same_m: float = Field(default=0.4, gt=0.0)
-    """Obstacles nearer to each other than that are one; robots are wider."""
-    apart_s: float = Field(default=0.06, ge=0.0)
+    robot: RobotModel = ROBOT
+    """Geometry of the other robots."""
+    same_m: float | None = Field(default=None, gt=0.0, le=2.0)
+    """Obstacles nearer to each other than that are one; null: 0.8 of the width of a robot."""
+    apart_s: float = Field(default=0.06, ge=0.0, le=1.0)
     """Percepts that were captured further apart are not joined."""
+    alone_s: float = Field(default=0.3, gt=0.0, le=10.0)
+    """Without obstacles of the omnidirectional camera for so long, those of the pair are published alone."""
 
 
 class ObstacleFusion(Component):
-    """Publishes the obstacles of both, each once, when there are new ones of the omnidirectional camera."""
+    """Publishes the obstacles of both, each once, when there are new ones of the omnidirectional camera.
+
+    While that camera is silent, new ones of the pair are published as they are.
+    """
 
     stage = "sensor_process"
     obstacle_percepts: Reads[obstacle_percepts_t]
@@ -33,27 +44,49 @@ class ObstacleFusion(Component):
 
     def loop(self) -> None:
         if not self.obstacle_percepts.refreshed:
+            if self.stereo_obstacles.refreshed and self._is_alone():
+                alone = self.stereo_obstacles.value
+                self._publish(alone.capture_us, joined([], alone.obstacles, self._same_m))
             return
         around, ahead = self.obstacle_percepts.value, self.stereo_obstacles.value
         together = self.stereo_obstacles.has_value and (
             abs(ahead.capture_us - around.capture_us) <= self.config.apart_s * US_PER_S
         )
+        found = joined(around.obstacles, ahead.obstacles if together else [], self._same_m)
+        self._publish(around.capture_us, found)
+
+    @property
+    def _same_m(self) -> float:
+        return self.config.same_m or _SAME * 2 * self.config.robot.radius_m
+
+    def _is_alone(self) -> bool:
+        """Returns whether the omnidirectional camera is silent."""
+        silent_s = self.clock.since_s(self.obstacle_percepts.header.time_us)
+        return not self.obstacle_percepts.has_value or silent_s > self.config.alone_s
+
+    def _publish(self, capture_us: int, obstacles: list[obstacle_t]) -> None:
         percepts = self.fused_obstacles.value = obstacle_percepts_t()
-        percepts.capture_us = around.capture_us
-        percepts.obstacles = joined(around.obstacles, ahead.obstacles if together else [], self.config.same_m)
+        percepts.capture_us, percepts.obstacles = capture_us, obstacles
         self.fused_obstacles.write()
 
 
 def joined(around: list[obstacle_t], ahead: list[obstacle_t], same_m: float) -> list[obstacle_t]:
-    """Returns the obstacles of two detectors; two of one place become one, weighted by their inverse covariances."""
-    left = list(ahead)
-    made = []
-    for one in around:
-        distances_m = [math.dist((one.x_m, one.y_m), (other.x_m, other.y_m)) for other in left]
-        nearest = min(range(len(left)), key=distances_m.__getitem__, default=-1)
-        near = nearest >= 0 and distances_m[nearest] <= same_m
-        made.append(_mean(one, left.pop(nearest)) if near else one)
-    return [*made, *left]
+    """Returns the obstacles of two detectors; two of one place become one, weighted by their inverse covariances.
+
+    The nearest two are joined first. Obstacles without a place are left out.
+    """
+    ours, theirs = ([each for each in found if plausible(each.x_m, each.y_m)] for found in (around, ahead))
+    distances = sorted(
+        (math.dist((one.x_m, one.y_m), (other.x_m, other.y_m)), i, j)
+        for i, one in enumerate(ours)
+        for j, other in enumerate(theirs)
+    )
+    partners: dict[int, int] = {}
+    for distance_m, i, j in distances:
+        if distance_m <= same_m and i not in partners and j not in partners.values():
+            partners[i] = j
+    made = [_mean(one, theirs[partners[i]]) if i in partners else one for i, one in enumerate(ours)]
+    return [*made, *(other for j, other in enumerate(theirs) if j not in partners.values())]
 
 
 def _mean(one: obstacle_t, other: obstacle_t) -> obstacle_t:

@@ -1,13 +1,14 @@
 """Finds the ball in the omnidirectional camera's picture."""
 
 from pydantic import Field as Setting
+from pydantic import field_validator
 
 from fwk import Writes
 from lcmtypes.soccer import ball_candidate_t, ball_percept_t
 from procs.model.ball import BALL, BallModel
 from procs.model.expected_errors import EXPECTED
 from procs.vision.ball_finder import BallFinder, BallSighting
-from procs.vision.colours import ColourRange, Hsv, Picture
+from procs.vision.colours import ColourRange, Hsv, Picture, not_below
 from procs.vision.detector import Detector, DetectorConfig
 
 
@@ -20,12 +21,14 @@ class OmniBallConfig(DetectorConfig):
     """Greatest hue, saturation and value of the ball's colour."""
     ball: BallModel = BALL
     """Size of the ball."""
-    deviation_px: float | None = Setting(default=None, gt=0.0)
+    deviation_px: float | None = Setting(default=None, gt=0.0, le=50.0)
     """Standard deviation of the ball's centre in the picture, with the shaking of the mirror; null: by `realism`."""
     least_fit: float = Setting(default=0.4, gt=0.0, lt=1.0)
     """Least visible share of the ball's area; a ball more hidden than that is not seen."""
-    farthest_m: float = Setting(default=8.0, gt=0.0)
+    farthest_m: float = Setting(default=8.0, gt=0.0, le=20.0)
     """Largest distance of a ball."""
+
+    _possible = field_validator("ball_high")(not_below)
 
 
 class OmniBall(Detector):

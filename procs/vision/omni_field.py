@@ -2,14 +2,15 @@
 
 import numpy as np
 from pydantic import Field as Setting
-from pydantic import PositiveFloat
+from pydantic import PositiveFloat, ValidationInfo, field_validator
 
 from fwk import Writes
 from lcmtypes.soccer import line_points_t, obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
 from procs.model.expected_errors import EXPECTED
+from procs.model.field import Field
 from procs.model.robot import ROBOT, RobotModel
-from procs.vision.colours import ColourRange, Hsv, Picture, to_hsv
+from procs.vision.colours import ColourRange, Hsv, Picture, not_below, to_hsv
 from procs.vision.detector import Detector, DetectorConfig
 from procs.vision.line_finder import LineFinder
 from procs.vision.marker_finder import MarkerFinder
@@ -17,23 +18,28 @@ from procs.vision.obstacle_finder import Obstacle, ObstacleFinder
 from procs.vision.scan import Scan
 
 _BESIDE_BODY_M = 0.03
+_WIDEST, _NARROWEST = 3.2, 0.4  # way over a line, as shares of its width ...
+_BLURRED_M = 0.15  # ... and over a narrow one as pixels show it
 
 
 class OmniFieldConfig(DetectorConfig):
     """Settings of the detector of lines and obstacles."""
 
-    rays: int = Setting(default=180, ge=16, le=720)
-    """Scan lines around the robot."""
-    nearest_m: float | None = Setting(default=None, gt=0.0)
-    """Begin of the rays; by default just outside the robot's own body."""
-    farthest_m: float = Setting(default=7.0, gt=0.5)
-    """End of the rays."""
-    ring_distances_m: tuple[float, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
-    """Radii of the circles that meet those lines which run towards the robot."""
-    most_points: int = Setting(default=150, ge=1)
-    """Line points sent at most, picked evenly from those found."""
+    rays: int = Setting(default=180, ge=60, le=720)
+    """Scan lines around the robot; with fewer than 60 a robot 3 m away is between two of them."""
     robot: RobotModel = ROBOT
     """Geometry of the other robots."""
+    field: Field = Field()
+    """Measures of the field; how wide a line is tells lines from other white things."""
+    nearest_m: float | None = Setting(default=None, gt=0.0)
+    """Begin of the rays; by default just outside the robot's own body."""
+    farthest_m: float = Setting(default=7.0, gt=0.5, le=20.0)
+    """End of the rays; they end before where the mirror shows no ground."""
+    ring_distances_m: tuple[PositiveFloat, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
+    """Radii of the circles that meet those lines which run towards the robot; what the mirror does not show is left
+    out."""
+    most_points: int = Setting(default=150, ge=1, le=10_000)
+    """Line points sent at most, picked evenly from those found."""
     deviation_px: tuple[PositiveFloat, PositiveFloat] | None = None
     """Standard deviation of a robot's middle in the picture, along and across the ray; null: by `realism`."""
     green_low: Hsv = (38, 70, 40)
@@ -56,6 +62,23 @@ class OmniFieldConfig(DetectorConfig):
     """Least hue, saturation and value of magenta markers."""
     magenta_high: Hsv = (172, 255, 255)
     """Greatest hue, saturation and value of magenta markers."""
+
+    _possible = field_validator("green_high", "white_high", "black_high", "cyan_high", "magenta_high")(not_below)
+
+    @field_validator("farthest_m")
+    @classmethod
+    def _not_nearer(cls, farthest_m: float, info: ValidationInfo) -> float:
+        """Refuses rays that end before they begin; what they depend on has been checked before."""
+        if {"mirror", "robot", "nearest_m"} <= info.data.keys():
+            reach_m = info.data["mirror"].mirror().reach_m()
+            begin_m = _begin_m(info.data["nearest_m"], info.data["robot"])
+            if begin_m >= farthest_m:
+                raise ValueError(f"the rays begin at {begin_m:g} m; farthest_m should be greater")
+            if begin_m >= reach_m:
+                raise ValueError(
+                    f"the rays begin at {begin_m:g} m, but the mirror shows no ground beyond {reach_m:.2f} m"
+                )
+        return farthest_m
 
 
 class OmniField(Detector):
@@ -85,9 +108,12 @@ class OmniField(Detector):
         white = ColourRange(config.white_low, config.white_high)
         black = ColourRange(config.black_low, config.black_high)
         self._star, self._rings = _star(config), _rings(config)
-        self._lines = LineFinder(green, white)
+        line_m = config.field.line_width_m
+        self._lines = LineFinder(
+            green, white, widest_m=max(_WIDEST * line_m, _BLURRED_M), narrowest_m=_NARROWEST * line_m
+        )
         teams = ColourRange(config.cyan_low, config.cyan_high), ColourRange(config.magenta_low, config.magenta_high)
-        self._markers = MarkerFinder(mirror, teams, config.robot.radius_m)
+        self._markers = MarkerFinder(mirror, teams, config.robot.radius_m, config.robot.marker_m)
         deviation_px = config.deviation_px or EXPECTED[config.realism].robot_px
         self._obstacles = ObstacleFinder(mirror, self._star, black, (green, white), config.robot.radius_m, deviation_px)
 
@@ -115,8 +141,13 @@ class OmniField(Detector):
         return message
 
 
+def _begin_m(nearest_m: float | None, robot: RobotModel) -> float:
+    """Returns the distance at which the rays begin."""
+    return nearest_m or robot.radius_m + _BESIDE_BODY_M
+
+
 def _star(config: OmniFieldConfig) -> Scan:
-    nearest_m = config.nearest_m or config.robot.radius_m + _BESIDE_BODY_M
+    nearest_m = _begin_m(config.nearest_m, config.robot)
     return Scan.star(config.mirror.mirror(), config.rays, nearest_m, config.farthest_m)
 
 

@@ -29,22 +29,31 @@ class Scan:
     @classmethod
     @lru_cache(maxsize=4)
     def star(cls, mirror: Mirror, rays: int, from_m: float, to_m: float) -> "Scan":
-        """Rays in equal angles, counter-clockwise from straight ahead, a sample a pixel, from near to far."""
+        """Rays in equal angles, counter-clockwise from straight ahead, a sample a pixel, from near to far.
+
+        They end where the mirror's picture does.
+        """
         angles = np.linspace(0.0, 2 * math.pi, rays, endpoint=False)
-        radii_px = np.arange(mirror.radius_px(from_m), mirror.radius_px(to_m))
+        radii_px = np.arange(mirror.radius_px(from_m), min(mirror.radius_px(to_m), _last_px(mirror)))
         return cls(mirror, *_around(mirror, angles[:, None], radii_px[None]))
 
     @classmethod
     @lru_cache(maxsize=4)
     def rings(cls, mirror: Mirror, distances_m: tuple[float, ...]) -> "Scan":
-        """Circles on the ground, counter-clockwise from straight behind, the largest with a sample a pixel."""
-        radii_px = np.array([mirror.radius_px(distance_m) for distance_m in distances_m])
-        samples = math.ceil(2 * math.pi * max(radii_px))
+        """Circles on the ground, counter-clockwise from straight behind, the largest with a sample a pixel.
+
+        Those that the mirror's picture does not show are left out.
+        """
+        every_px = np.array([mirror.radius_px(distance_m) for distance_m in distances_m])
+        radii_px = every_px[every_px < _last_px(mirror)]
+        samples = math.ceil(2 * math.pi * radii_px.max(initial=0.0))
         angles = np.linspace(math.pi, 3 * math.pi, samples, endpoint=False)
         return cls(mirror, *_around(mirror, angles[None], radii_px[:, None]))
 
     def look_up(self, pixels: Picture) -> Picture:
         """The picture along the scan lines: (lines, samples, 3)."""
+        if not self._map.size:
+            return np.empty((*self._map.shape[:2], 3), np.uint8)
         seen = cv2.remap(  # type: ignore[call-overload]  # the stubs do not know that one map can hold both coordinates
             pixels, self._map, None, cv2.INTER_NEAREST
         )
@@ -53,6 +62,11 @@ class Scan:
 
 def _around(mirror: Mirror, angles: Floats, radii_px: Floats) -> tuple[Floats, Floats]:
     return mirror.centre_px - radii_px * np.sin(angles), mirror.centre_px - radii_px * np.cos(angles)
+
+
+def _last_px(mirror: Mirror) -> float:
+    """Returns the radius of the last pixels that lie wholly in the mirror's round picture."""
+    return mirror.size_px / 2 - 1
 
 
 def runs(mask: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:

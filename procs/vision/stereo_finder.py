@@ -4,6 +4,7 @@ import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -14,10 +15,26 @@ from procs.model.robot import ROBOT
 from procs.vision.obstacle_finder import Obstacle
 from procs.vision.stereo_rig import Grey, StereoRig
 
+_NEAREST_M = 0.75  # ahead of the cameras: what is nearer is seen by the omnidirectional one alone
 _SUBPIXELS = 16  # OpenCV's disparities are in sixteenths of a pixel
 _LEAST_ROWS = 4  # of a column that a body covers
 _COLUMN_GAP = 8  # columns without a body that may lie within one
-_SAME_PART = 0.25  # of the radius of a robot times two: deeper steps separate bodies
+_GAP = 0.3  # of the width of a robot: a body may have so wide a gap, too
+_SAME_PART = 0.25  # of the radius of a robot times four: deeper steps separate bodies
+_LEAST_WIDTH = 0.4  # share of the columns of a robot that must show one
+_WHOLE = 0.85  # share of its width from which a robot counts as seen from edge to edge
+_SLACK_PX = 5  # by which widths differ as a rule
+_DOUBT = 0.4  # standard deviation of the middle, as a share of the width that is missing or too much
+
+
+class _Body(NamedTuple):
+    """Columns (n) that show one body, and how far ahead it is in each."""
+
+    columns: Indices
+    near_m: Floats
+    left_hidden: bool
+    """Something nearer, or the end of the picture, hides the left edge."""
+    right_hidden: bool
 
 
 @dataclass(frozen=True)
@@ -34,11 +51,15 @@ class StereoFinder:
     radius_m: float = ROBOT.radius_m
     deviation_px: float = 0.35
     """Standard deviation of a disparity."""
-    disparities: int = 64
-    """Largest disparity in pixels, a multiple of 16; what is nearer is not seen."""
     block_px: int = 11
     """Width and height of the blocks that are compared; odd."""
     _matcher: list[cv2.StereoBM] = field(default_factory=list, compare=False)
+
+    @property
+    def disparities(self) -> int:
+        """Largest disparity in pixels, a multiple of 16 and at most half of the width; what is nearer is not seen."""
+        nearest_px = self.rig.focal_px * self.rig.baseline_m / _NEAREST_M
+        return 16 * max(1, min(math.ceil(nearest_px / 16), self.rig.width_px // 32))
 
     def disparity(self, pixels: Grey) -> Floats:
         """Returns the disparity (height, width) in pixels of the left frame's pixels; NaN where it is not known."""
@@ -64,29 +85,46 @@ class StereoFinder:
         if not len(columns):
             return []
         near_m = np.nanmedian(np.where(upright, ahead_m, np.nan)[:, columns], axis=0)
-        return [self._obstacle(columns[part], near_m[part]) for part in self._bodies(columns, near_m)]
+        return [self._obstacle(body) for body in self._bodies(columns, near_m)]
 
-    def _bodies(self, columns: Indices, near_m: Floats) -> Iterator[slice]:
-        steps = (np.diff(columns) > _COLUMN_GAP) | (np.abs(np.diff(near_m)) > 2 * _SAME_PART * self.radius_m * 2)
-        edges = [0, *(np.flatnonzero(steps) + 1).tolist(), len(columns)]
-        for first, last in itertools.pairwise(edges):
-            width_px = self.rig.focal_px * 2 * self.radius_m / float(np.median(near_m[first:last]))
-            if last - first >= 0.4 * width_px:
-                yield slice(first, last)
+    def _bodies(self, columns: Indices, near_m: Floats) -> Iterator[_Body]:
+        """Divides columns with something upright into bodies, from left to right."""
+        width_px = self.rig.focal_px * 2 * self.radius_m / near_m
+        gaps = np.diff(columns) > np.maximum(_COLUMN_GAP, _GAP * width_px[1:])
+        steps_m = np.diff(near_m)
+        edges = np.flatnonzero(gaps | (np.abs(steps_m) > 4 * _SAME_PART * self.radius_m)) + 1
+        first_px, last_px = self.disparities + self.block_px, self.rig.width_px - 1 - self.block_px
+        for begin, end in itertools.pairwise([0, *edges.tolist(), len(columns)]):
+            # An edge is hidden at the end of what both frames show, or behind something nearer.
+            left = columns[begin] <= first_px or (begin > 0 and steps_m[begin - 1] > 0 and not gaps[begin - 1])
+            right = columns[end - 1] >= last_px or (end < len(columns) and steps_m[end - 1] < 0 and not gaps[end - 1])
+            whole_px = float(np.median(width_px[begin:end]))
+            across_px = int(columns[end - 1] - columns[begin]) + 1
+            parts = max(1, round(across_px / whole_px))
+            cuts = np.searchsorted(columns, columns[begin] + across_px * np.arange(1, parts) / parts).tolist()
+            for number, part in enumerate(itertools.starmap(slice, itertools.pairwise([begin, *cuts, end]))):
+                if part.stop - part.start >= _LEAST_WIDTH * whole_px:
+                    yield _Body(columns[part], near_m[part], left and number == 0, right and number == parts - 1)
 
-    def _obstacle(self, columns: Indices, near_m: Floats) -> Obstacle:
+    def _obstacle(self, body: _Body) -> Obstacle:
         rig = self.rig
-        points_m = np.column_stack((near_m, -rig.columns[columns] * near_m))
-        first, last = (math.atan2(points_m[end, 1], points_m[end, 0]) for end in (0, -1))
-        ray_rad = (first + last) / 2
-        ahead = np.array((math.cos(ray_rad), math.sin(ray_rad)))
-        along_m = points_m @ ahead
-        across_m = points_m @ np.array((-ahead[1], ahead[0]))
-        depth_m = np.sqrt((self.radius_m**2 - across_m**2).clip(0.0))
-        away_m = float(np.median(along_m + depth_m))
+        points_m = np.column_stack((body.near_m, -rig.columns[body.columns] * body.near_m))
+        left_rad, right_rad = (math.atan2(points_m[end, 1], points_m[end, 0]) for end in (0, -1))
+        ray_rad, half_rad, away_m = (left_rad + right_rad) / 2, 0.0, 0.0
+        for _ in range(3):  # how wide a body should be depends on its distance, which depends on its middle
+            ahead = np.array((math.cos(ray_rad), math.sin(ray_rad)))
+            across_m = points_m @ np.array((-ahead[1], ahead[0]))
+            away_m = float(np.median(points_m @ ahead + np.sqrt((self.radius_m**2 - across_m**2).clip(0.0))))
+            # Matched blocks reach over the body's edges by half of their width.
+            half_rad = math.asin(self.radius_m / max(away_m, self.radius_m)) + self.block_px / 2 / rig.focal_px
+            if left_rad - right_rad > 2 * _WHOLE * half_rad or body.left_hidden == body.right_hidden:
+                break
+            ray_rad = right_rad + half_rad if body.left_hidden else left_rad - half_rad
+        wrong_rad = max(0.0, abs(2 * half_rad - left_rad + right_rad) - _SLACK_PX / rig.focal_px)
+        guessed = body.left_hidden != body.right_hidden and 2 * half_rad > left_rad - right_rad
         x_m, y_m = away_m * ahead
         along = self.deviation_px * away_m**2 / (rig.focal_px * rig.baseline_m) + 0.02
-        across = 2.0 * away_m / rig.focal_px + 0.02
+        across = 2.0 * away_m / rig.focal_px + 0.02 + _DOUBT * (0.0 if guessed else wrong_rad) * away_m
         axes = np.column_stack((ahead, (-ahead[1], ahead[0])))
         covariance_m2 = axes @ np.diag((along**2, across**2)) @ axes.T
         return Obstacle(x_m + rig.forward_m, y_m + rig.baseline_m / 2, covariance_m2)

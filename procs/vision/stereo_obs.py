@@ -5,9 +5,14 @@ from pydantic import Field as Setting
 
 from fwk import Component, Config, Image, Writes
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
+from procs.model.ball import BALL, BallModel
 from procs.model.robot import ROBOT, RobotModel
+from procs.vision.exposure import captured_us
 from procs.vision.stereo_finder import StereoFinder
 from procs.vision.stereo_rig import StereoRig
+
+_ABOVE_BALL_M = 0.03
+_LOWEST_M, _LOWEST = 0.28, 0.55  # lower edge of what is looked at, and as a share of the height of low robots
 
 
 class StereoObsConfig(Config):
@@ -17,10 +22,14 @@ class StereoObsConfig(Config):
     """Calibration of the pair."""
     robot: RobotModel = ROBOT
     """Geometry of the other robots."""
-    farthest_m: float = Setting(default=4.5, gt=0.5)
+    ball: BallModel = BALL
+    """Size of the ball, which is no obstacle."""
+    farthest_m: float = Setting(default=4.5, gt=0.5, le=20.0)
     """Obstacles further ahead are not reported."""
-    deviation_px: float = Setting(default=0.35, gt=0.0)
+    deviation_px: float = Setting(default=0.35, gt=0.0, le=50.0)
     """Standard deviation of a disparity."""
+    latency_s: float = Setting(default=0.0, ge=0.0, le=1.0)
+    """From the exposure of a frame until its camera publishes it, for cameras that do not state the exposure."""
 
 
 class StereoObs(Component):
@@ -40,8 +49,7 @@ class StereoObs(Component):
             return
         pixels = self.stereo_image.pixels
         percepts = self.stereo_obstacles.value = obstacle_percepts_t()
-        announced = self.stereo_image.announcement
-        percepts.capture_us = announced.value.capture_us or announced.header.time_us
+        percepts.capture_us = captured_us(self.stereo_image, self.config.latency_s)
         for found in [] if pixels is None else self._finder.find(pixels):
             obstacle = obstacle_t()
             obstacle.x_m, obstacle.y_m = float(found.x_m), float(found.y_m)
@@ -54,6 +62,7 @@ class StereoObs(Component):
         config = self.config
         self._finder = StereoFinder(
             config.rig,
+            lowest_m=max(2 * config.ball.radius_m + _ABOVE_BALL_M, min(_LOWEST_M, _LOWEST * config.robot.height_m)),
             farthest_m=config.farthest_m,
             radius_m=config.robot.radius_m,
             deviation_px=config.deviation_px,

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, ValidationInfo, field_validator
 
 from fwk import Config
 from procs.model.algebra import Floats
@@ -13,21 +13,36 @@ Grey = NDArray[np.uint8]
 """Height x width."""
 
 
+_SHORTEST, _LONGEST = 0.25, 5.0  # focal length divided by the width of a frame
+
+
 class StereoRig(Config):
     """The pair as it was calibrated; camera and detector use the same."""
 
-    width_px: int = Field(default=400, ge=64, le=1600)
+    width_px: int = Field(default=400, ge=160, le=1600)
     """Width of each frame, in pixels."""
-    height_px: int = Field(default=200, ge=32, le=1200)
+    height_px: int = Field(default=200, ge=80, le=1200)
     """Height of each frame, in pixels."""
     focal_px: float = Field(default=300.0, gt=0.0)
     """Focal length: a thing as wide as it is far away is so wide in the picture."""
-    baseline_m: float = Field(default=0.16, gt=0.0)
+    baseline_m: float = Field(default=0.16, ge=0.02, le=0.6)
     """Distance between the two cameras, which look along the robot's x axis."""
-    forward_m: float = 0.1
+    forward_m: float = Field(default=0.1, ge=-0.5, le=0.5)
     """Distance from the robot's middle forward to the cameras."""
-    height_m: float = Field(default=0.5, gt=0.0)
+    height_m: float = Field(default=0.5, gt=0.1, le=2.0)
     """Height of the cameras above the ground."""
+
+    @field_validator("focal_px")
+    @classmethod
+    def _possible(cls, focal_px: float, info: ValidationInfo) -> float:
+        """Refuses lenses that would see more than 127 or less than 11 degrees of the width, checked before."""
+        width_px = info.data.get("width_px")
+        if width_px and not _SHORTEST <= focal_px / width_px <= _LONGEST:
+            shortest_px, longest_px = _SHORTEST * width_px, _LONGEST * width_px
+            raise ValueError(
+                f"focal_px of {focal_px:g} should be from {shortest_px:g} to {longest_px:g} for frames of {width_px} px"
+            )
+        return focal_px
 
     @property
     def columns(self) -> Floats:
@@ -40,7 +55,14 @@ class StereoRig(Config):
         return np.asarray((np.arange(self.height_px, dtype=np.float64) - (self.height_px - 1) / 2) / self.focal_px)
 
     def halves(self, pixels: Grey) -> tuple[Grey, Grey]:
-        """Returns the frames of the left and the right camera from both side by side, in any size, grey or coloured."""
+        """Returns the frames of the left and the right camera from both side by side, in any size, grey or coloured.
+
+        Raises:
+            ValueError: the frames are neither grey nor have three colours.
+        """
+        if pixels.ndim == 3 and pixels.shape[2] != 3:
+            shape = " x ".join(map(str, pixels.shape))
+            raise ValueError(f"the frame is {shape}; the pair needs grey or three colours")
         grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY) if pixels.ndim == 3 else pixels
         pair = scaled(np.asarray(grey, np.uint8), 2 * self.width_px, self.height_px)
         return pair[:, : self.width_px], pair[:, self.width_px :]

@@ -36,10 +36,12 @@ def validated(model: type[M], node: Node, report: Report, what: str) -> tuple[M,
     nothing is left.
     """
     first = True
+    shortened: list[Path] = []  # lists that lost a value: what comes after it has moved
     while True:
         made, mistakes = _tried(model, node, what)
         for mistake in mistakes:
-            if first or not mistake.missing:  # missing values may have been left out here
+            moved = any(mistake.path[: len(path)] == path for path in shortened)
+            if first or not (mistake.missing or moved):  # missing values may have been left out here
                 report(mistake.path, node.at(*mistake.path).place, mistake.text)
         if made:
             return made, node
@@ -49,6 +51,8 @@ def validated(model: type[M], node: Node, report: Report, what: str) -> tuple[M,
             dict.fromkeys(mistake.path for mistake in mistakes)
         ):  # from the end, to keep positions in lists valid
             node = _without(node, path)
+            if isinstance(path[-1], int):
+                shortened.append(path[:-1])
         first = False
 
 

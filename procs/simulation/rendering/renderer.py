@@ -73,7 +73,10 @@ class Renderer:
         radii_m, heights_m = np.empty((2, pillared))
         radii_m[:posts], heights_m[:posts] = self._post_size_m
         radii_m[posts:], heights_m[posts:] = bodies.robot_radius_m, bodies.robot_height_m
-        shapes_m = pillars(at_m[:pillared], radii_m, heights_m), markers(robots_m, bodies.robot_radius_m)
+        shapes_m = (
+            pillars(at_m[:pillared], radii_m, heights_m),
+            markers(robots_m, bodies.robot_radius_m, bodies.marker_m),
+        )
         pillars_px, markers_px = self._in_picture(shapes_m, shift_px)
         for i in np.argsort(-np.hypot(at_m[:, 0], at_m[:, 1]), kind="stable").tolist():
             if i >= pillared:

@@ -36,6 +36,21 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """,
     ),
     Broken(
+        "it.yaml:2: it/a: 'colour.0' is 300; it should be less than or equal to 179",
+        """
+        components:
+          it/a: {use: strange:Seer, config: {colour: [300, 255, 255]}}
+        --- strange.py
+        from typing import Annotated
+        from fwk import Component, Config, Field
+        class Sight(Config):
+            colour: tuple[Annotated[int, Field(le=179)], int, int] = (1, 2, 3)
+        class Seer(Component):
+            stage = "think"
+            config: Sight
+        """,
+    ),
+    Broken(
         "it.yaml:1: it/a: the setting 'key' is missing; it has no default",
         "components: {it/a: {use: plan_parts:Keyed}}",
     ),

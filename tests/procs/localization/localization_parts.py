@@ -6,7 +6,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from fwk.testing import Bench
+from fwk.testing import Bench, system_of
+from lcmtypes.soccer import ground_truth_t, pose_t
 from procs.model.field import Field
 from procs.model.frames import rotation, wrap
 
@@ -100,6 +101,26 @@ class FakeRobot:
         """Returns the newest published pose minus the true one; (3)."""
         sent = bench.port("pose").sent[-1]
         return np.array((sent.x_m - self.pose[0], sent.y_m - self.pose[1], wrap(sent.heading_rad - self.pose[2])))
+
+
+def wander(seed: int, sets: tuple[str, ...], ticks: int = 400) -> tuple[Floats, Floats]:
+    """Returns the errors (n, 3) of a wandering robot's pose while it is localized, and how surprising (n) each is."""
+    wanted = ("world/simulator", "world/referee", *(f"cyan1/{each}" for each in ("base", "percepts", "localization")))
+    system = system_of(
+        "kidnapped.yaml",
+        (*wanted, "cyan1/wanderer").__contains__,
+        seed,
+        (*sets, "*/wanderer.carried_every_s=0"),
+    )
+    system.tick(ticks)
+    errors, surprises = [], []
+    for place, told in zip(system.sent["world/ground_truth"], system.sent["cyan1/pose"], strict=True):
+        pose, true = pose_t.decode(told), ground_truth_t.decode(place).robots[0]
+        if pose.localized:
+            error = np.array((pose.x_m - true.x_m, pose.y_m - true.y_m, wrap(pose.heading_rad - true.heading_rad)))
+            errors.append(error)
+            surprises.append(float(error @ np.linalg.solve(pose.covariance, error)))
+    return np.array(errors), np.array(surprises)
 
 
 def frames(bench: Bench, robot: FakeRobot, count: int) -> list[bool]:

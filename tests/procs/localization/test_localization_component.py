@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from fwk.testing import Bench
+from fwk.model.errors import PlanError
+from fwk.testing import Bench, launch_plan
 from procs.localization.localization import Localization, LocalizationConfig
 from tests.procs.localization.localization_parts import (
     PERIOD_S,
@@ -13,6 +14,7 @@ from tests.procs.localization.localization_parts import (
     FakeRobot,
     frames,
     until_localized,
+    wander,
 )
 
 
@@ -97,6 +99,32 @@ def test_same_messages_give_the_same_poses() -> None:
 def test_incomplete_start_pose_is_refused() -> None:
     with pytest.raises(ValueError, match="belong together"):
         Bench(Localization, start_x_m=1.0)
+
+
+@pytest.mark.parametrize(
+    ("settings", "mistake"),
+    [
+        (("*/localization.start_heading_rad=1",), "belong together; give all three or none"),
+        (
+            tuple(
+                f"*/localization.start_{name}={value}" for name, value in (("x_m", 100), ("y_m", 0), ("heading_rad", 0))
+            ),
+            "start_x_m and start_y_m give (100, 0), which is outside the walls",
+        ),
+        (("*/localization.lost_score=0.9",), "good_score of 0.5 should be at least lost_score, which is 0.9"),
+    ],
+)
+def test_impossible_settings_are_refused_at_launch(settings: tuple[str, ...], mistake: str) -> None:
+    with pytest.raises(PlanError) as raised:
+        launch_plan("soccer-percepts.yaml", settings)
+    assert mistake in str(raised.value)
+
+
+@pytest.mark.parametrize("mirror", ["{size_px: 120, view_angle_deg: 86}", "{height_m: 0.4}", "{size_px: 1000}"])
+def test_covariance_is_honest_with_any_mirror(mirror: str) -> None:
+    _, surprises = wander(2, (f"shared.mirror={mirror}",))
+    assert len(surprises) > 100
+    assert np.mean(surprises) < 5.0, "3 for an honest covariance"
 
 
 def test_blocked_robot_with_turning_wheels_stays_in_place() -> None:

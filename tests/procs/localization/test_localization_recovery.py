@@ -10,6 +10,7 @@ from procs.localization.hypotheses import Hypotheses
 from procs.localization.localization import Localization
 from tests.procs.localization.localization_parts import (
     FakeRobot,
+    frames,
     until_localized,
 )
 
@@ -127,3 +128,16 @@ def test_scores_fade_in_seconds_not_in_frames(interval_s: float) -> None:
     for _ in range(round(0.48 / interval_s)):
         hypotheses.update(pose, np.array([0.0]), interval_s)
     assert hypotheses.known[0].score == pytest.approx(0.85**6, rel=0.01)
+
+
+@pytest.mark.parametrize("tick", [0, 500])
+def test_start_counts_at_the_beginning_of_a_run_only(tick: int) -> None:
+    """A localization that is started again in the middle knows where the robot was, not where it is."""
+    robot = FakeRobot(seed=3)
+    robot.pose = np.array((-8.0, -6.0, 0.0)) if tick == 0 else np.array((1.7, -5.3, 0.0))
+    bench = Bench(Localization, start_x_m=-8.0, start_y_m=-6.0, start_heading_rad=0.0)
+    bench.tick, bench.time_us = tick, 50_000 * tick
+    assert frames(bench, robot, 3) == [tick == 0] * 3
+    assert until_localized(bench, robot, 5.0) < math.inf
+    known = [sent for sent in bench.port("pose").sent if sent.localized]
+    assert all(math.hypot(sent.x_m - robot.pose[0], sent.y_m - robot.pose[1]) < 0.5 for sent in known)

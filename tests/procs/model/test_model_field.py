@@ -65,3 +65,29 @@ def test_ball_is_never_dropped_at_a_penalty_mark() -> None:
     spots = field.restart_spots()
     assert len(spots) == 7
     assert not {field.penalty_mark(side) for side in SIDES} & set(spots)
+
+
+@pytest.mark.parametrize(
+    ("measures", "mistake"),
+    [
+        ({"corner_radius_m": 0.05}, "line_width_m of 0.125 m should be at most corner_radius_m, which is 0.05 m"),
+        (
+            {"circle_diameter_m": 0.2},
+            "line_width_m of 0.125 m should be at most half of circle_diameter_m, which is 0.1 m",
+        ),
+        (
+            {"goal_area_width_m": 0.125},
+            "line_width_m of 0.125 m should be at most half of goal_area_width_m, which is 0.0625 m",
+        ),
+        (
+            {"mark_diameter_m": 50.0},
+            "mark_diameter_m of 50 m should be at most half of circle_diameter_m, which is 2 m",
+        ),
+        ({"post_diameter_m": 5.0}, "post_diameter_m of 5 m should be at most half of goal_width_m, which is 1.2 m"),
+    ],
+)
+def test_lines_and_marks_that_cover_what_they_bound_are_refused(measures: dict[str, float], mistake: str) -> None:
+    """With some of them tables of lines would be full of NaN, or all of the carpet white."""
+    with pytest.raises(ValidationError) as raised:
+        Field(**measures)
+    assert mistake in str(raised.value)

@@ -40,3 +40,8 @@ def test_what_was_placed_is_not_seen_on_the_way() -> None:
 
 def test_before_the_first_message_the_world_is_as_in_it() -> None:
     assert past(truth(50_000, 1.0, 0.0, 0.0), truth(100_000, 1.1, 0.0, 0.0)).at(10_000).robots[0].x_m == 1.0
+
+
+def test_short_ticks_do_not_shorten_the_memory() -> None:
+    worlds = [truth(tick * 5_000, 0.01 * tick, 0.0, 0.0) for tick in range(1, 400)]
+    assert past(*worlds).at(1_000_000).robots[0].x_m == pytest.approx(2.0)

@@ -204,6 +204,23 @@ def test_ball_above_the_mirrors_edge_is_not_seen() -> None:
     assert not look(bench(realism="none"), truth((OWN[0] + 2.0, OWN[1]), ball_z_m=0.75)).visible
 
 
+def test_ball_straight_above_the_mirror_is_not_seen() -> None:
+    for away_m in (0.01, 0.05, 0.1):
+        assert not look(bench(realism="none"), truth((OWN[0] + away_m, OWN[1]), ball_z_m=1.0)).visible
+
+
+def test_nothing_is_seen_beyond_what_the_mirror_shows() -> None:
+    """It shows 4.3 m of ground; robots and ball are drawn with errors of pixels from there on only."""
+    eyes = bench(realism="none", mirror={"view_angle_deg": 80.0})
+    near, far = (OWN[0], OWN[1] - 3.0), (OWN[0], OWN[1] - 5.0)
+    assert look(eyes, truth(near, (OWN[0] + 3.0, OWN[1]))).visible
+    assert eyes.port("obstacle_percepts").sent[-1].n == 1
+    assert not look(eyes, truth(far, (OWN[0] + 5.0, OWN[1]))).visible
+    assert eyes.port("obstacle_percepts").sent[-1].n == 0
+    lines = eyes.port("line_points").sent[-1]
+    assert 3.5 < max(np.hypot(lines.x_m, lines.y_m)) < 4.3
+
+
 def test_ball_above_robots_is_not_hidden() -> None:
     ahead, between = (OWN[0] + 3.0, OWN[1]), (OWN[0] + 1.5, OWN[1])
     assert look(bench(realism="none"), truth(ahead, between, ball_z_m=0.61)).visible

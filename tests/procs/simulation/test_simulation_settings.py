@@ -56,6 +56,10 @@ robots:
             "world/simulator.physics.contacts.hull_friction=.inf",
             "'physics.contacts.hull_friction' is inf; it should be a finite number",
         ),
+        ("*/percepts.ball_px=1e9", "'ball_px' is 1000000000.0; it should be less than or equal to 50"),
+        ("*/percepts.reach_m=1000", "'reach_m' is 1000; it should be less than or equal to 20"),
+        ("*/percepts.gap_s=3600", "'gap_s' is 3600; it should be less than or equal to 60"),
+        ("team_*/radio.delay_s=100", "'delay_s' is 100; it should be less than or equal to 10"),
         ("*/percepts.line_missed=1.5", "'line_missed' is 1.5; it should be less than or equal to 1"),
         ("*/percepts.ring_distances_m=[0.7,-1]", "'ring_distances_m.1' is -1; it should be greater than 0"),
         (

@@ -1,6 +1,7 @@
 """Detections of robots, drawn over the images of their cameras."""
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -35,7 +36,7 @@ def sight(camera: str, **found: Any) -> list[dict[str, Any]]:
     return shapes
 
 
-@pytest.mark.parametrize(("width_px", "height_px"), [(400, 400), (640, 480)])
+@pytest.mark.parametrize(("width_px", "height_px"), [(400, 400), (640, 480), (40, 30), (1650, 1640)])
 def test_ball_and_lines_lie_over_their_pixels(width_px: int, height_px: int) -> None:
     ball = ball_percept_t()
     ball.visible, ball.x_m, ball.y_m = True, 2.0, 0.0
@@ -46,7 +47,7 @@ def test_ball_and_lines_lie_over_their_pixels(width_px: int, height_px: int) -> 
     ring, _ = [shape for shape in shapes if shape["l"] == "ball"]
     middle = (width_px - 1) / 2, (height_px - 1) / 2
     assert (ring["x"], point["y"]) == pytest.approx(middle, abs=0.6)
-    away_px = MirrorConfig(size_px=min(width_px, height_px)).mirror().radius_px(2.0)
+    away_px = replace(MirrorConfig().mirror(), size_px=min(width_px, height_px)).radius_px(2.0)
     assert middle[0] - point["x"] == pytest.approx(away_px, abs=1.0)
     assert 0 < middle[1] - ring["y"] < away_px * 1.1
 

@@ -10,13 +10,13 @@ import cv2
 import numpy as np
 import pytest
 
-from fwk.testing import Bench, settings_in
+from fwk.testing import Bench, MemorySystem, settings_in
 from lcmtypes.core import frame_t
-from lcmtypes.soccer import ground_truth_t
+from lcmtypes.soccer import ground_truth_t, obstacle_t
 from procs.simulation.camera import Camera
 from procs.vision.omni_ball import OmniBall
 from procs.vision.omni_field import OmniField
-from tests.procs.vision.picture_parts import frame_of, robot, system
+from tests.procs.vision.picture_parts import World, frame_of, robot, system
 
 ROOT = Path(__file__).parents[3]
 
@@ -203,3 +203,23 @@ def test_rays_begin_beside_the_own_body(radius_m: float) -> None:
     assert isinstance(component, OmniField)
     begins_m = np.hypot(component._star.ground_m[:, 0, 0], component._star.ground_m[:, 0, 1])
     assert begins_m == pytest.approx(radius_m + 0.03, abs=0.01)
+
+
+class Strangers(World):
+    """A robot whose name gives no team, and one of magenta."""
+
+    def loop(self) -> None:
+        truth = self.ground_truth.value
+        truth.robots = [
+            robot("cyan1", -3.0, 2.0, 0.5),
+            robot("anna", -1.5, 2.0, 0.0),
+            robot("magenta2", -3.0, 0.5, 0.0),
+        ]
+        self.ground_truth.write()
+
+
+def test_robot_that_is_not_a_player_has_no_marker() -> None:
+    run = MemorySystem({"world/world": Strangers, "cyan1/camera": Camera, "cyan1/omni_field": OmniField})
+    run.tick()
+    found = run.newest("cyan1/obstacle_percepts").obstacles
+    assert sorted(each.team for each in found) == [obstacle_t.TEAM_UNKNOWN, obstacle_t.TEAM_MAGENTA]

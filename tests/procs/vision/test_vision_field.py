@@ -12,6 +12,7 @@ from procs.model.field import Arc, Field, Segment
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.sensor_noise import SensorNoise
 from procs.simulation.rendering.shapes import Bodies
+from procs.vision.calibration import MirrorConfig
 from procs.vision.colours import BLACK, CYAN, GREEN, MAGENTA, WHITE, Bgr, ColourRange, Picture, to_hsv
 from procs.vision.line_finder import LineFinder
 from procs.vision.obstacle_finder import Obstacle, ObstacleFinder
@@ -200,11 +201,49 @@ def test_obstacle_covariance_is_honest() -> None:
     assert 0.7 < np.mean(normed) < 3.0  # two degrees of freedom: 2 if the covariance were exact
 
 
+@pytest.mark.parametrize(("size_px", "rays"), [(400, 90), (1200, 180), (400, 720)])
+def test_covariance_tells_how_far_the_rays_are_apart(size_px: int, rays: int) -> None:
+    mirror = MirrorConfig(size_px=size_px).mirror()
+    star = Scan.star(mirror, rays, 0.28, DEFAULTS.farthest_m)
+    finder = ObstacleFinder(mirror, star, BLACKS, (GREENS, WHITES), deviation_px=EXPECTED["realistic"].robot_px)
+    drawn, rng, normed = Renderer(mirror, FIELD, Bodies()), np.random.default_rng(5), []
+    for _ in range(30):
+        angle, distance_m = rng.uniform(-math.pi, math.pi), rng.uniform(1.0, 3.5)
+        truth = distance_m * np.array([math.cos(angle), math.sin(angle)])
+        scene = Scene(Pose(-4.0, 1.0, 0.0), [(-4.0 + truth[0], 1.0 + truth[1], CYAN)], None)
+        (found,) = finder.find(to_hsv(star.look_up(drawn.render(scene))))
+        error = np.array([found.x_m, found.y_m]) - truth
+        normed.append(error @ np.linalg.solve(found.covariance_m2, error))
+    assert np.mean(normed) < 3.0
+
+
 def test_two_robots_side_by_side_are_two_obstacles() -> None:
     robots = [(-1.0, 2.26, CYAN), (-1.0, 1.74, MAGENTA)]
     found = obstacles(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), robots, None)))
     places = sorted((o.y_m, o.x_m) for o in found)
     assert np.allclose(places, [(-0.26, 2.0), (0.26, 2.0)], atol=0.08)
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize("bearing_rad", [0.3, math.pi])  # the rays begin and end at 0
+def test_robot_half_hidden_by_another_is_not_drawn_aside(side: float, bearing_rad: float) -> None:
+    own, normed = Pose(-4.0, 1.0, 0.0), []
+    for step in range(12):
+        near_m, far_m = 1.2 + 0.08 * step, 2.6 + 0.05 * step
+        apart_rad = 1.1 * math.asin(0.25 / near_m) * side  # the near one hides nearly half of the far one
+        near, far = (
+            distance_m * np.array((math.cos(angle), math.sin(angle)))
+            for distance_m, angle in ((near_m, bearing_rad), (far_m, bearing_rad + apart_rad))
+        )
+        others = [(own.x_m + at[0], own.y_m + at[1], CYAN) for at in (near, far)]
+        found = obstacles(renderer().render(Scene(own, others, None)))
+        error, covariance_m2 = min(
+            ((np.array((each.x_m, each.y_m)) - far, each.covariance_m2) for each in found),
+            key=lambda pair: float(np.hypot(*pair[0])),
+        )
+        assert np.hypot(*error) < 0.15
+        normed.append(error @ np.linalg.solve(covariance_m2, error))
+    assert np.mean(normed) < 3.0
 
 
 def test_ball_before_a_robot_does_not_split_it() -> None:

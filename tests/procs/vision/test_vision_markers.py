@@ -5,10 +5,13 @@ import math
 import numpy as np
 import pytest
 
+from procs.model.ball import BALL
 from procs.model.field import Field
+from procs.model.robot import RobotModel
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.shapes import Bodies
-from procs.vision.colours import BLACK, COLOURS, WHITE, Bgr, ColourRange, Picture
+from procs.vision.calibration import MirrorConfig
+from procs.vision.colours import BLACK, COLOURS, WHITE, Bgr, ColourRange, Picture, to_hsv
 from procs.vision.marker_finder import MarkerFinder
 from procs.vision.omni_field import OmniFieldConfig
 from tests.procs.vision.test_vision_ball import picture
@@ -57,3 +60,18 @@ def test_obstacle_at_or_under_the_camera_is_of_no_team() -> None:
 
 def test_no_robots_have_no_teams() -> None:
     assert FINDER.find(np.zeros((400, 400, 3), np.uint8), []) == []
+
+
+@pytest.mark.parametrize("height_m", [0.3, 0.4, 0.8])
+def test_marker_is_on_the_body_however_high_it_is(height_m: float) -> None:
+    robot = RobotModel(height_m=height_m)
+    mirror = MirrorConfig(height_m=0.6).mirror()
+    frame = Renderer(mirror, Field(), Bodies.of(robot, BALL)).render(
+        Scene(Pose(0.0, 0.0, 0.0), [(1.5, 0.0, COLOURS["magenta"])], None)
+    )
+    above, below = mirror.project(np.array([(1.25, 0.0, height_m + 0.02), (1.25, 0.0, height_m - 0.02)]))
+    assert robot.marker_m[1] <= height_m
+    assert CONFIG.magenta_low[0] > to_hsv(frame)[tuple(np.rint(above[::-1]).astype(int))][0]
+    assert below[1] > above[1]
+    finder = MarkerFinder(mirror, FINDER.colours, robot.radius_m, robot.marker_m)
+    assert finder.find(frame, [(1.5, 0.0)]) == [2]

@@ -71,3 +71,17 @@ def test_above_the_horizon_there_is_no_ground() -> None:
 @pytest.mark.parametrize("centre", [(0.36, 0.0, 0.11), (-2.0, 1.5, 0.11), (3.0, -3.0, 0.5), (1.0, 4.0, 0.85)])
 def test_centre_of_a_circle_undoes_sphere(mirror: Mirror, centre: tuple[float, float, float]) -> None:
     assert mirror.centre_of(*mirror.sphere(centre, 0.11), 0.11) == pytest.approx(centre)
+
+
+def test_reach_is_the_ground_at_the_pictures_edge() -> None:
+    mirror = Mirror(size_px=360, view_angle_rad=math.radians(80.0))
+    assert mirror.radius_px(mirror.reach_m()) == pytest.approx(180.0)
+    assert mirror.reach_m(0.11) == pytest.approx(0.64 / 0.75 * mirror.reach_m())
+    assert Mirror(view_angle_rad=math.radians(92.0)).reach_m() == math.inf
+
+
+@pytest.mark.parametrize("height_m", [0.87, 1.2, 3.0])
+def test_sphere_straight_above_the_viewpoint_is_not_shown(height_m: float) -> None:
+    """It covers all directions but those in a circle, whose radius is negative."""
+    for away_m in (0.01, 0.05, 0.1):
+        assert not Mirror().shows_all(*Mirror().sphere((away_m, 0.0, height_m), 0.11))

@@ -6,10 +6,14 @@ import cv2
 import numpy as np
 import pytest
 
-from fwk.testing import Bench, system_of
+from fwk import Component, VisionMaster
+from fwk.model.errors import PlanError
+from fwk.testing import Bench, MemorySystem, launch_plan, system_of
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
+from procs.model.ball import BALL
 from procs.model.field import Field
+from procs.model.robot import RobotModel
 from procs.simulation.rendering.renderer import Pose
 from procs.simulation.rendering.shapes import Bodies
 from procs.simulation.rendering.stereo_renderer import StereoRenderer
@@ -81,6 +85,81 @@ def test_robot_beside_or_behind_is_not_seen() -> None:
     assert seen((-2.0, 0.0), (0.3, 2.0)) == []
 
 
+@pytest.mark.parametrize("ahead_m", [2.0, 3.0])
+@pytest.mark.parametrize("count", [2, 3])
+def test_robots_that_touch_each_other_are_as_many_as_they_are(ahead_m: float, count: int) -> None:
+    places = [(ahead_m, 0.52 * (number - (count - 1) / 2)) for number in reversed(range(count))]
+    found = [(each.x_m, each.y_m) for each in seen(*places)]
+    assert np.array(found) == pytest.approx(np.array(places), abs=0.1)
+
+
+@pytest.mark.parametrize("left_m", [-0.55, -0.5, 0.4, 0.45])
+def test_robot_at_the_pictures_edge_is_not_drawn_inward(left_m: float) -> None:
+    """A part of it is outside; its middle follows from the edge that is seen."""
+    for ahead_m in (1.6, 2.0, 2.7, 3.5):
+        (found,) = seen((ahead_m, left_m * ahead_m))
+        error = np.array((found.x_m - ahead_m, found.y_m - left_m * ahead_m))
+        assert error @ np.linalg.solve(found.covariance_m2, error) < 9.2
+        assert abs(error[1]) < 0.06
+
+
+def test_robot_behind_another_is_not_drawn_to_its_visible_side() -> None:
+    _, behind = seen((1.8, 0.1), (2.6, -0.25))
+    assert behind.y_m == pytest.approx(-0.25, abs=0.06)
+
+
+def test_noise_hardly_ever_makes_two_robots_of_one() -> None:
+    surprises, twice = [], 0
+    for seed in range(40):
+        place_m = (1.1 + 0.05 * seed, 0.2 * math.sin(seed))
+        found = seen(place_m, seed=seed, noise_levels=10.0)  # as in `harsh`
+        twice += len(found) > 1
+        for each in found:
+            error_m = np.array((each.x_m - place_m[0], each.y_m - place_m[1]))
+            surprises.append(float(error_m @ np.linalg.solve(each.covariance_m2, error_m)))
+    assert twice <= 1
+    assert len(surprises) >= 34
+    assert np.mean(np.array(surprises) < 5.99) > 0.9
+
+
+@pytest.mark.parametrize(
+    "rig", [StereoRig(width_px=160, height_px=80, focal_px=120.0), StereoRig(baseline_m=0.3), StereoRig(height_m=0.8)]
+)
+def test_pairs_of_other_sizes_find_robots_from_near_on(rig: StereoRig) -> None:
+    other = StereoRenderer(rig, Field(), Bodies())
+    for ahead_m in (1.3, 2.0, 3.0):
+        frame = other.render(Pose(0.0, 0.0, 0.0), [(ahead_m, 0.1)])
+        (found,) = StereoFinder(rig).find(frame)
+        assert (found.x_m, found.y_m) == pytest.approx((ahead_m, 0.1), abs=0.03 + 0.02 * ahead_m**2)
+
+
+def test_heights_looked_at_fit_low_robots_and_large_balls() -> None:
+    low = RobotModel(height_m=0.32)
+    frame = StereoRenderer(RIG, Field(), Bodies.of(low, BALL)).render(Pose(0.0, 0.0, 0.0), [(2.5, 0.0)])
+    bench = Bench(StereoObs, robot=low.model_dump())
+    bench.show("stereo_image", frame)
+    bench.iterate()
+    assert len(bench.port("stereo_obstacles").sent[-1].obstacles) == 1
+    assert Bench(StereoObs, ball={"radius_m": 0.2}).component._finder.lowest_m > 0.4
+
+
+@pytest.mark.parametrize(
+    ("setting", "mistake"),
+    [
+        ("focal_px=1e9", "focal_px of 1e+09 should be from 100 to 2000 for frames of 400 px"),
+        ("focal_px=10", "focal_px of 10 should be from 100 to 2000"),
+        ("width_px=64", "'rig.width_px' is 64; it should be greater than or equal to 160"),
+        ("baseline_m=16", "'rig.baseline_m' is 16; it should be less than or equal to 0.6"),
+        ("forward_m=100", "'rig.forward_m' is 100; it should be less than or equal to 0.5"),
+        ("height_m=50", "'rig.height_m' is 50; it should be less than or equal to 2"),
+    ],
+)
+def test_pair_that_cannot_be_is_refused(setting: str, mistake: str) -> None:
+    with pytest.raises(PlanError) as raised:
+        launch_plan("one-robot.yaml", (f"shared.rig.{setting}",))
+    assert mistake in str(raised.value)
+
+
 def test_picture_of_another_size_is_scaled() -> None:
     frame = RENDERER.render(
         OWN, [(OWN.x_m + 2.0 * math.cos(OWN.heading_rad), OWN.y_m + 2.0 * math.sin(OWN.heading_rad))]
@@ -90,6 +169,30 @@ def test_picture_of_another_size_is_scaled() -> None:
     bench.iterate()
     (found,) = bench.port("stereo_obstacles").sent[-1].obstacles
     assert (found.x_m, found.y_m) == pytest.approx((2.0, 0.0), abs=0.15)
+
+
+class PlainPair(Component):
+    """Does not know when its frames were exposed."""
+
+    stage = "sensor_acquire"
+    stereo_image: VisionMaster
+
+    def loop(self) -> None:
+        self.stereo_image.publish(np.zeros((200, 800), np.uint8))
+
+
+def test_latency_of_a_camera_that_states_no_exposure_counts() -> None:
+    parts = {"cyan1/pair": PlainPair, "cyan1/stereo_obs": StereoObs}
+    run = MemorySystem(parts, settings={"cyan1/stereo_obs": {"latency_s": 0.08}})
+    run.tick(5)
+    assert run.newest("cyan1/stereo_obstacles").capture_us == run.newest("cyan1/stereo_image").header.time_us - 80_000
+
+
+def test_frame_without_usable_colours_is_refused() -> None:
+    bench = Bench(StereoObs)
+    bench.show("stereo_image", np.zeros((100, 200, 2), np.uint8))
+    with pytest.raises(ValueError, match="the frame is 100 x 200 x 2; the pair needs grey or three colours"):
+        bench.iterate()
 
 
 def test_fusion_weights_by_covariance_and_keeps_the_rest() -> None:
@@ -112,6 +215,43 @@ def test_fusion_takes_percepts_of_one_time_only() -> None:
     first, second = bench.port("fused_obstacles").sent
     assert ([each.x_m for each in first.obstacles], first.capture_us) == ([1.0, 2.1], 110_000)
     assert [each.x_m for each in second.obstacles] == [1.0]
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_fusion_joins_the_nearest_first(swapped: bool) -> None:
+    """The second detector sees one of two robots that touch, a little beside it."""
+    around = [obstacle(2.0, 0.35), obstacle(2.0, -0.15)]
+    made = joined(around[::-1] if swapped else around, [obstacle(2.0, -0.05, across_m=0.02)], same_m=0.45)
+    places_m = sorted(each.y_m for each in made)
+    assert places_m == [pytest.approx(-0.05, abs=0.01), 0.35]
+
+
+def test_fusion_leaves_out_what_has_no_place() -> None:
+    (one,) = joined([obstacle(2.0, 0.0)], [obstacle(math.nan, 0.0), obstacle(2.1, 0.0)], same_m=0.4)
+    assert one.x_m == pytest.approx(2.05)
+    assert joined([obstacle(math.inf, 0.0)], [obstacle(1e300, 0.0)], same_m=0.4) == []
+
+
+@pytest.mark.parametrize(("radius_m", "count"), [(0.12, 2), (0.25, 1)])
+def test_fusion_knows_how_wide_robots_are(radius_m: float, count: int) -> None:
+    bench = Bench(ObstacleFusion, robot={"radius_m": radius_m})
+    for port, y_m in (("obstacle_percepts", 0.0), ("stereo_obstacles", 0.3)):
+        bench.port(port).put(capture_us=40_000, obstacles=[obstacle(2.0, y_m)])
+    bench.iterate()
+    assert bench.port("fused_obstacles").sent[-1].n == count
+
+
+def test_pair_sees_alone_while_the_other_camera_is_silent() -> None:
+    bench = Bench(ObstacleFusion)
+    bench.port("obstacle_percepts").put(capture_us=1, obstacles=[obstacle(-1.0, 0.0)])
+    bench.iterate()
+    for _ in range(10):
+        bench.port("stereo_obstacles").put(capture_us=bench.time_us, obstacles=[obstacle(2.0, 0.0)])
+        bench.iterate()
+    sent = bench.port("fused_obstacles").sent
+    assert [[each.x_m for each in percepts.obstacles] for percepts in (sent[0], sent[-1])] == [[-1.0], [2.0]]
+    assert 0.25 <= (sent[1].header.time_us - sent[0].header.time_us) / 1e6 <= 0.4
+    assert [percepts.capture_us for percepts in sent] == sorted(percepts.capture_us for percepts in sent)
 
 
 def test_impossible_covariance_does_not_spoil_the_other() -> None:

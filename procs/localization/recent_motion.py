@@ -1,0 +1,47 @@
+"""The way of the last seconds, for what was seen before the last tick."""
+
+from collections import deque
+from typing import NamedTuple
+
+import numpy as np
+
+from procs.localization.self_localizer import Motion
+from procs.model.frames import Floats, rotation
+
+MEMORY_US = 1_500_000
+"""Motions before that are forgotten; no camera takes longer from the exposure to its points."""
+
+
+class Way(NamedTuple):
+    """Motion since an exposure, in the robot's frame at the exposure."""
+
+    shift_m: Floats
+    """(2)."""
+    turn_rad: float
+
+
+class RecentMotion:
+    """Motions from update to update, the newest last."""
+
+    def __init__(self) -> None:
+        self._steps: deque[tuple[int, int, Motion]] = deque()
+
+    def add(self, from_us: int, to_us: int, motion: Motion) -> None:
+        """Takes the motion between two times, each of which begins where the last one ended."""
+        self._steps.append((from_us, to_us, motion))
+        while self._steps[0][1] < to_us - MEMORY_US:
+            self._steps.popleft()
+
+    def since(self, time_us: int) -> Way | None:
+        """Returns the way from a time until now; None if that time is before everything known."""
+        if not self._steps or time_us < self._steps[0][0]:
+            return None
+        shift_m, turn_rad = np.zeros(2), 0.0
+        for from_us, to_us, motion in self._steps:
+            if to_us <= time_us:
+                continue
+            share = min(1.0, (to_us - time_us) / (to_us - from_us))
+            middle_rad = turn_rad + share * motion.turn_rad / 2
+            shift_m = shift_m + rotation(middle_rad) @ (share * motion.ahead_m, share * motion.left_m)
+            turn_rad += share * motion.turn_rad
+        return Way(shift_m, turn_rad)
