@@ -125,6 +125,16 @@ def test_command_that_is_refused_breaks_a_scenario(tmp_path: Path) -> None:
     assert refused.startswith("refused: no command 'pause'; there are kickoff")
 
 
+def test_command_has_nothing_of_the_one_before(tmp_path: Path) -> None:
+    text = (
+        "dummies: [cyan2, magenta2]\ncommands:\n  - {at_s: 0.1, place_ball: {x_m: 3, y_m: 2, vy_m_s: 1}}\n"
+        "  - {at_s: 0.2, place_ball: {x_m: 5}}\n  - {at_s: 0.3, referee: {name: goal, team: cyan}}\n"
+        "  - {at_s: 0.4, referee: {name: goal}}\n"
+        "in_order: [abs(y(ball)) > 1, x(ball) > 4.9 and abs(y(ball)) < 0.1 and ball_speed < 0.1]\ntime_s: 0.8\n"
+    )
+    assert run(written(tmp_path, text)).broken == ["refused: a goal needs a team: cyan or magenta"]
+
+
 @pytest.mark.parametrize(
     ("at_s", "condition", "broken"),
     [
