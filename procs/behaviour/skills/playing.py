@@ -42,10 +42,13 @@ class _WithBall(StateMachine):
 
 
 class Dribble(_WithBall):
-    """Turns to the place, drives there with the ball, mouth forward, and turns to the heading before it is there."""
+    """Turns to the place, drives there with the ball, mouth forward, and turns to the heading before it is there.
+
+    It is there at the nearest place where the robot may stand.
+    """
 
     def _there(self, scene: Scene) -> bool:
-        return math.dist(scene.view.own.place, scene.place) < _THERE_M
+        return math.dist(scene.view.own.place, scene.permitted(scene.place)) < _THERE_M
 
     def _would_pull_the_ball(self, scene: Scene) -> bool:
         way_rad = bearing_rad(scene.view.own.place, scene.place)

@@ -121,6 +121,15 @@ def test_dribble_drives_mouth_first_and_fails_without_the_ball() -> None:
     assert lost[-1] is Status.FAILED
 
 
+def test_dribble_ends_at_the_nearest_place_that_is_permitted() -> None:
+    edge = Point(10.0, 0.0)
+    near = scene(view(robot("cyan2", 9.9, 0.0), ball(10.23, 0.0)), 10.7, 0.0, holds_ball=True)
+    near = near._replace(permitted=lambda _: edge)
+    assert Dribble().step(near).status is Status.FINAL
+    far = near._replace(view=view(robot("cyan2", 9.5, 0.0), ball(9.83, 0.0)))
+    assert Dribble().step(far).status is Status.RUNNING
+
+
 def test_aim_turns_to_the_place_and_waits_there_without_a_kick() -> None:
     skill = Aim()
     turning = skill.step(scene(view(OWN, ball(0.33, 0.0)), 0.0, 5.0, holds_ball=True))
