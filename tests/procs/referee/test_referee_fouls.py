@@ -255,6 +255,16 @@ def test_areas(places: dict[str, Point], time_s: float, reason: str) -> None:
     assert script.reasons == ([reason] if reason else [])
 
 
+@pytest.mark.parametrize(("x_m", "reasons"), [(-10.6, []), (10.6, ["goal area"])])
+def test_robot_that_is_alone_keeps_its_own_goal(x_m: float, reasons: list[str]) -> None:
+    script = Script(deadlock_s=60.0).playing()
+    for mate in ("cyan1", "cyan3"):
+        del script.robots[mate]
+    script.robots["cyan2"] = Point(x_m, 1.5)
+    script.wait(1.5)
+    assert script.reasons == reasons
+
+
 @pytest.mark.parametrize(("speed_m_s", "foul"), [(0.5, True), (0.0, False)])
 def test_pushing_a_rival_away_is_a_foul(speed_m_s: float, foul: bool) -> None:
     script = Script().playing()
