@@ -112,6 +112,8 @@ def _mistakes(scenario: Scenario) -> list[str]:
     except ValidationError as error:
         found += texts_of(error, "rules", list(RefereeConfig.model_fields))
     found += settings_mistakes(scenario.settings, configs)
+    if CREW in scenario.settings:
+        found.append(f"settings: {CREW} has its actions under commands")
     for text in (*scenario.eventually, *scenario.in_order, *scenario.always, *scenario.at_end):
         try:
             Expression(text, WORDS)

@@ -60,6 +60,7 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
         ("rules: {half: 1}", ScenarioError, "rules: no key 'half'; did you mean 'half_s'?"),
         ("settings: {cyan2/agent: {}}\nrobots: [cyan1]", ScenarioError, "no component 'cyan2/agent'; did you mean"),
         ("settings: {world/referee: {half_s: -1}}", ScenarioError, "world/referee.half_s: Input should be greater"),
+        ("settings: {world/crew: {actions: []}}", ScenarioError, "settings: world/crew has its actions under commands"),
         ("commands: [{at_s: 1}]", ScenarioError, "commands.0: give one of place_ball, place_robot, referee"),
         ("commands: [{place_ball: {x: 1}}]", ScenarioError, "commands.0: place_ball: there is no 'x'; there are x_m"),
         ("commands: [{place_robot: {x_m: left}}]", ScenarioError, "x_m is 'left'; it should be a number"),
