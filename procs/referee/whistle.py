@@ -247,8 +247,13 @@ class Whistle:
         self.start(sight)
 
     def _too_few(self, sight: Sight) -> bool:
-        teams = [sight.team(team) for team in (Team.CYAN, Team.MAGENTA)]
-        return any(0 < len(robots) < self.rules.least_robots for robots in teams)
+        """Returns whether a team has too few robots and may get more: for one after red cards, nobody waits."""
+        return any(self._waits_for(team, len(sight.team(team))) for team in (Team.CYAN, Team.MAGENTA))
+
+    def _waits_for(self, team: Team, robots: int) -> bool:
+        away = [robot for robot in self.cards.sent_off if team_number(robot) is team]
+        dismissed, least = len(self.cards.dismissed.intersection(away)), self.rules.least_robots
+        return 0 < robots < least and (robots + dismissed < least or dismissed < len(away))
 
     def _watch(self, duration_s: float, sight: Sight) -> None:
         scene = self._stretch.watch(duration_s, sight, self.ends, self.rules)

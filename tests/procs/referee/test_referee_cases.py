@@ -5,6 +5,8 @@ import importlib
 import pytest
 
 from procs.model.field import Point
+from procs.referee import restarts
+from procs.referee.cards import Card
 from procs.referee.orders import carry_out
 from procs.referee.restarts import State
 from procs.referee.rules import Rules
@@ -173,6 +175,23 @@ def test_match_waits_for_two_robots_of_each_team() -> None:
     assert script.whistle.stopped
     script.robots["magenta2"] = away["magenta2"]
     script.tick()
+    assert not script.whistle.stopped
+
+
+def test_match_does_not_wait_for_a_robot_with_a_red_card() -> None:
+    script = Script(least_robots=2, repair_s=20.0)
+    for name in ("cyan3", "magenta3"):
+        del script.robots[name]
+    script.started()
+    script.whistle.card("cyan1", Card.RED)
+    script.whistle.interrupt(restarts.after_foul(Point(1.0, 1.0), CYAN, script.whistle.rules.field))
+    script.wait(5.0)
+    assert not script.whistle.stopped
+    script.whistle.take_out("magenta1", "repair")
+    script.whistle.interrupt(restarts.after_foul(Point(1.0, 1.0), CYAN, script.whistle.rules.field))
+    script.wait(19.0)
+    assert script.whistle.stopped, "one under repair comes back"
+    script.wait(3.0)
     assert not script.whistle.stopped
 
 

@@ -21,6 +21,15 @@ def test_set_piece_goal_counts_only_after_a_second_robot() -> None:
     assert script.reasons == ["no second robot touched the ball"]
 
 
+def test_taker_that_has_left_has_taken_the_set_piece() -> None:
+    script = Script().started()
+    script.touch("cyan2")
+    script.whistle.take_out("cyan2", "repair")
+    script.roll(0.3, 0.0)
+    script.touch("magenta2")
+    assert (script.state, script.reasons) == ((State.KICK_OFF, CYAN, False), [])
+
+
 def test_set_piece_goal_counts_after_a_mate_played() -> None:
     script = Script().playing()
     script.roll(2.0, 0.0)
