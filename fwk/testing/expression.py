@@ -7,6 +7,7 @@ from typing import Any
 
 from fwk.model.errors import hint
 from fwk.testing.bounded import BOUNDED, Bounding
+from fwk.testing.misfits import Misfits, always_holds
 
 Words = Mapping[str, Callable[..., Any]]
 """Functions that conditions may call, by name."""
@@ -95,11 +96,49 @@ class Expression:
         known |= BOUNDED
         try:
             if not self._names_known:
-                _check_names(self._tree.body, known)
+                self._check_parts(self._tree.body, known)
                 self._names_known = True
             return eval(self._code, {"__builtins__": {}}, known)
         except (AttributeError, KeyError, IndexError, TypeError, ValueError, ArithmeticError, RecursionError) as error:
             raise ExpressionError(f"'{self.text}': {_said(error)}") from error
+
+    def holds(self, newest: Callable[[str], Any]) -> bool:
+        """Returns whether the condition holds; see `value`.
+
+        Raises:
+            ExpressionError: besides, the value is of a kind that says nothing, such as a function or a message.
+        """
+        value = self.value(newest)
+        if isinstance(self._tree.body, ast.Constant):
+            raise ExpressionError(f"'{self.text}': a fixed value is no condition; compare something with it")
+        wrong = always_holds(self.text.strip(), value)
+        if wrong:
+            raise ExpressionError(f"'{self.text}': {wrong}")
+        return bool(value)
+
+    def _check_parts(self, part: ast.expr, known: Mapping[str, Any]) -> None:
+        """Evaluates all parts of a condition, the innermost first; passes over errors that other values may not cause.
+
+        Raises:
+            TypeError: the values of a part do not fit together.
+        """
+        for inner in ast.iter_child_nodes(part):
+            if isinstance(inner, ast.expr):
+                self._check_parts(inner, known)
+
+        def values(node: ast.expr) -> Any:
+            whole = ast.fix_missing_locations(ast.Expression(node))
+            return eval(compile(whole, "<condition>", "eval"), {"__builtins__": {}}, known)
+
+        misfits = Misfits(self.text.strip(), values)
+        with suppress(IndexError, ValueError, ArithmeticError):
+            try:
+                values(part)
+            except TypeError as error:
+                raise TypeError(misfits.words(part) or str(error)) from error
+            wrong = misfits.never_equal(part) if isinstance(part, ast.Compare) else misfits.no_condition(part)
+            if wrong:
+                raise TypeError(wrong)
 
     def _check(self, node: ast.AST) -> None:
         if not isinstance(node, (*_ALLOWED, ast.Load)):
@@ -118,15 +157,6 @@ def _namespaces_in(tree: ast.AST) -> set[ast.expr]:
     return {*(node.value for node in nodes if isinstance(node, ast.Attribute)), *arguments}
 
 
-def _check_names(part: ast.expr, known: Mapping[str, Any]) -> None:
-    """Evaluates all parts of a condition, the innermost first; passes over errors that other values may not cause."""
-    for inner in ast.iter_child_nodes(part):
-        if isinstance(inner, ast.expr):
-            _check_names(inner, known)
-    with suppress(IndexError, ValueError, ArithmeticError):
-        eval(compile(ast.Expression(part), "<condition>", "eval"), {"__builtins__": {}}, known)
-
-
 def _said(error: Exception) -> str:
     if isinstance(error, AttributeError) and error.name:
         known = [name for name in dir(error.obj) if name.islower() and not name.startswith("_")]
@@ -135,6 +165,8 @@ def _said(error: Exception) -> str:
     if isinstance(error, KeyError) and error.args:
         text = str(error.args[0])
         return text if " " in text else f"there is no '{text}'"
+    if isinstance(error, IndexError):
+        return "an index is beyond the end of its list; ask for its length before: len(...) > 0 and ..."
     return str(error)
 
 

@@ -69,15 +69,15 @@ class Watch:
         Raises:
             ExpressionError: a channel or a field of a condition does not exist.
         """
-        self._open = [each for each in self._open if not each.value(newest)]
-        while self._ordered and self._ordered[0].value(newest):
+        self._open = [each for each in self._open if not each.holds(newest)]
+        while self._ordered and self._ordered[0].holds(newest):
             del self._ordered[0]
-        self._broken += [f"{time_s:.2f} s: not {each.text}" for each in self._always if not each.value(newest)]
+        self._broken += [f"{time_s:.2f} s: not {each.text}" for each in self._always if not each.holds(newest)]
 
     def verdict(self, time_s: float, newest: Callable[[str], Any]) -> Verdict:
         """Judges the run after its last tick."""
         missed = [f"never: {each.text}" for each in (*self._open, *self._ordered[:1])]
-        wrong = [f"in the end not: {each.text}" for each in self._at_end if not each.value(newest)]
+        wrong = [f"in the end not: {each.text}" for each in self._at_end if not each.holds(newest)]
         return Verdict(time_s, self._broken + (missed + wrong if not self._broken else []))
 
 

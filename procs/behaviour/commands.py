@@ -21,7 +21,7 @@ def accepted_place(skill: str, place: Point, field: Field, bodies: Bodies) -> Po
     if skill not in (*_DRIVES, *_AT_PLACE):
         return place
     x_m, y_m = _furthest_m(skill, field, bodies)
-    if skill == "goto" and is_in_goal(place, field):
+    if skill in _DRIVES and is_in_goal(place, field):
         place = reachable(place, field, bodies)
     return Point(clamp(place.x_m, -x_m, x_m), clamp(place.y_m, -y_m, y_m))
 
@@ -30,7 +30,7 @@ def mistake(command: skill_command_t, field: Field, bodies: Bodies) -> str:
     """Returns why the command of a known skill cannot be carried out, and what could be; empty if it can."""
     if not plausible(command.x_m, command.y_m, command.heading_rad, command.speed_m_s):
         return "the target is not a place on the field, or the speed is not a number"
-    if command.skill == "goto" and (reason := _in_goal(Point(command.x_m, command.y_m), field, bodies)):
+    if command.skill in _DRIVES and (reason := _in_goal(Point(command.x_m, command.y_m), field, bodies)):
         return reason
     place = accepted_place(command.skill, Point(command.x_m, command.y_m), field, bodies)
     furthest_m = _furthest_m(command.skill, field, bodies)
@@ -50,7 +50,7 @@ def mistake(command: skill_command_t, field: Field, bodies: Bodies) -> str:
 
 def _in_goal(place: Point, field: Field, bodies: Bodies) -> str:
     """Returns that a place is in or behind a goal, where no robot stands, and what would do; empty if it is not."""
-    if not is_in_goal(place, field) or abs(place.x_m) > _furthest_m("goto", field, bodies)[0]:
+    if not is_in_goal(place, field) or abs(place.x_m) > _furthest_m(_DRIVES[0], field, bodies)[0]:
         return ""
     where = "in" if abs(place.x_m) < field.half_length_m + field.goal_depth_m else "behind"
     limit_m = reachable(Point(field.half_length_m, place.y_m), field, bodies).x_m

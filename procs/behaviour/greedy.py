@@ -8,12 +8,13 @@ from procs.behaviour.order import Order
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, PASSER
 from procs.behaviour.view import View
 from procs.model.field import Field, Point
-from procs.model.geometry import bearing_rad
+from procs.model.geometry import bearing_rad, between
 
 _KEEPER = 1
 _TAKER = 2
 _TOUCHED_M = 0.5  # a robot this near to the ball has touched it
 _CLEAR_M = 0.5  # distance from the own penalty area
+_PUSH = 0.2  # share of the way to the goal for which a robot that is alone pushes the ball ahead
 _MIDDLE = 3.5  # mean of the numbers of the robots that do not have the ball
 # On the usual field; on others they are larger or smaller with it:
 _SHOT_RANGE_M = 8.0
@@ -24,17 +25,19 @@ _ASIDE_M = 0.8  # distance along y between those robots
 def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str, Order]:
     """Returns the role and the order of a robot, in the attack frame.
 
-    Number 1 keeps the goal, number 2 takes the set pieces. In play the robot that believes itself nearest to the ball
-    goes for it and shoots; the others line up behind the ball. A taker shoots from where it is, and leaves the ball
-    alone until another robot is at it, if it has mates.
+    Number 1 keeps the goal, number 2 takes the set pieces; a robot that is alone plays, whatever its number. In play
+    the robot that believes itself nearest to the ball goes for it and shoots; the others line up behind it. A taker
+    shoots from where it is, and leaves the ball alone until another robot is at it, if it has mates.
     """
     number, ball = view.own.number, view.ball.place
     if game.paused or not view.localized:
         return DEFENDER, Order("stop", intention="pause" if game.paused else "lost")
-    if number == _KEEPER:
+    alone = _is_alone(view)
+    if number == _KEEPER and not alone:
         return GOALKEEPER, Order("shoot", field.goal_centre(1.0)) if holds_ball else Order("keep_line")
     if not game.free_play:
-        return _set_piece(view, game, number == _TAKER and game.whose is Whose.OURS, holds_ball, field)
+        takes = (number == _TAKER or alone) and game.whose is Whose.OURS
+        return _set_piece(view, game, takes, holds_ball, field)
     taken = view.own.role == PASSER and bool(view.mates) and not view.ball.is_near(view.others, _TOUCHED_M)
     if holds_ball and taken:
         return PASSER, Order("shoot", field.goal_centre(1.0), intention="take set piece")
@@ -53,6 +56,10 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
     return PASSER if taken else DEFENDER, Order("goto", place, bearing_rad(place, ball), "follow")
 
 
+def _is_alone(view: View) -> bool:
+    return not (view.mates or view.silent_mates)
+
+
 def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Field) -> tuple[str, Order]:
     goal = field.goal_centre(1.0)
     goal_rad = bearing_rad(game.spot, goal)
@@ -61,6 +68,8 @@ def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Fie
         place = Point(game.spot.x_m - _BEHIND_M * along * view.own.number, 0.5 * game.spot.y_m)
         step = formation.next_step(view.own.place, formation.allowed(place, game, field), game, field, view.others)
         return DEFENDER, Order("goto", step, bearing_rad(step, game.spot), "keep distance")
+    if holds_ball and _is_alone(view):
+        return ATTACKER, _play(view, field)
     if game.stopped:
         return ATTACKER, Order("goto", formation.taker_place(game.spot, goal_rad), goal_rad, "take set piece")
     return PASSER, Order(
@@ -72,5 +81,7 @@ def _play(view: View, field: Field) -> Order:
     goal, range_m = field.goal_centre(1.0), _SHOT_RANGE_M * formation.scale(field)[0]
     if math.dist(view.own.place, goal) < range_m:
         return Order("shoot", goal, bearing_rad(view.own.place, goal), "shoot")
+    if _is_alone(view):  # all the way is too long for a dribble
+        return Order("push", between(view.own.place, goal, _PUSH), bearing_rad(view.own.place, goal), "push")
     target = Point(field.half_length_m - range_m / 2, 0.0)
     return Order("dribble", target, bearing_rad(view.own.place, goal), "dribble")

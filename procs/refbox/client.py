@@ -55,21 +55,23 @@ class RefBoxClient(Component):
         self._sent: list[Sent] = []
 
     def loop(self) -> None:
-        for call in [each for each in self._sent if each.finished]:
-            self._sent.remove(call)
-            if not call.done:
-                self.log.warning(f"the referee does not obey: {call.reason}")
+        finished = [call for call in self._sent if call.finished]
+        self._sent = [call for call in self._sent if not call.finished]
+        self._warn("the referee does not obey", [call.reason for call in finished if not call.done])
         if self._connection is None and self.clock.now_us >= self._again_us:
             self._connect()
-        mistakes = [mistake for message in self._messages() if (mistake := self._hand_on(message))]
-        if mistakes:
-            more = f" (and {len(mistakes) - 1} more)" if len(mistakes) > 1 else ""
-            self.log.warning(f"RefBox: {mistakes[0]}{more}")
+        self._warn("RefBox", [mistake for message in self._messages() if (mistake := self._hand_on(message))])
 
     def finalize(self) -> None:
         """Leaves the RefBox."""
         for each in filter(None, (self._connection, self._dialling)):
             each.close()
+
+    def _warn(self, what: str, reasons: list[str]) -> None:
+        """Logs one line, however many commands a RefBox sends in a tick."""
+        if reasons:
+            more = f" (and {len(reasons) - 1} more)" if len(reasons) > 1 else ""
+            self.log.warning(f"{what}: {reasons[0]}{more}")
 
     def _connect(self) -> None:
         """Begins to connect, or goes on, without waiting for the RefBox."""

@@ -46,7 +46,7 @@ def news(
     commands = _robots(before, now, events, number, team)
     if now.state != before.state and now.state in _BREAKS:
         return commands + _break(now)
-    if now.half != before.half:
+    if now.half != before.half or _begins_again(before, now):
         commands += _half(now)
     if now.stopped and _piece(now) != _piece(before):
         commands += [Command("STOP"), *_stopped(now)] if not before.stopped else _stopped(now)
@@ -97,6 +97,12 @@ def _is_new_match(before: game_state_t, now: game_state_t, events: Sequence[game
         return True
     went_back = now.half == 1 and (before.half > 1 or now.time_in_half_s < before.time_in_half_s)
     return went_back and all(event.goal or event.card or event.reason in OFF_FIELD for event in newer)
+
+
+def _begins_again(before: game_state_t, now: game_state_t) -> bool:
+    """Returns whether the same half is played anew, or goes on after a break."""
+    after_break = before.state in _BREAKS and now.state not in _BREAKS
+    return after_break or now.time_in_half_s < before.time_in_half_s
 
 
 def _break(now: game_state_t) -> list[Command]:

@@ -55,7 +55,8 @@ class RefBoxServer(Component):
         """
         self._before: game_state_t | None = None
         self._stations: list[socket.socket] = []
-        self._listening = socket.create_server((self.config.host, self.config.port), backlog=_BACKLOG)
+        family = socket.AF_INET6 if ":" in self.config.host else socket.AF_INET
+        self._listening = socket.create_server((self.config.host, self.config.port), family=family, backlog=_BACKLOG)
         self._listening.setblocking(False)
         self._arrivals = selectors.DefaultSelector()
         self._arrivals.register(self._listening, selectors.EVENT_READ)

@@ -29,6 +29,11 @@ class Cards:
         """Robots that have to leave the field, or stay away from it."""
         return frozenset(self._out_s)
 
+    @property
+    def dismissed(self) -> frozenset[str]:
+        """Robots that do not come back in this match."""
+        return frozenset(robot for robot, time_s in self._out_s.items() if math.isinf(time_s))
+
     def pass_time(self, duration_s: float) -> None:
         """Lets time go by; robots whose time is over may come back."""
         left_s = {robot: time_s - duration_s for robot, time_s in self._out_s.items()}

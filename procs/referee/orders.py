@@ -6,7 +6,7 @@ from procs.model.field import Point
 from procs.model.robot import PLAYERS
 from procs.referee import halves, restarts
 from procs.referee.cards import Card
-from procs.referee.ends import Team
+from procs.referee.ends import Team, team_number
 from procs.referee.names import Names
 from procs.referee.refusals import SET_PIECES, why_not
 from procs.referee.restarts import Restart, State
@@ -38,7 +38,7 @@ def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: 
     if name in ("goal", "subgoal"):
         return _goal(whistle, _TEAMS[team], name == "goal")
     if name in _CARDS or name in ("repair", "substitution"):
-        return _robot(whistle, sight, name, robot, names)
+        return _robot(whistle, sight, name, _TEAMS[team], robot, names)
     if name in _HALVES:
         whistle.begin_half(_HALVES[name])
         return ""
@@ -85,10 +85,14 @@ def _goal(whistle: Whistle, team: Team, more: bool) -> str:
     return ""
 
 
-def _robot(whistle: Whistle, sight: Sight, name: str, namespace: str, names: Names) -> str:
+def _robot(whistle: Whistle, sight: Sight, name: str, team: Team, namespace: str, names: Names) -> str:
     known, robot = names.all_outside(sight.robots), names.inside(namespace)
+    if not namespace:
+        return f"a {name.replace('_', ' ')} needs a robot; there are {', '.join(known) or 'none'}"
     if namespace not in known:
         return f"no robot '{namespace}'; there are {', '.join(known) or 'none'}"
+    if team and team_number(robot) is not team:
+        return f"{namespace} does not play for {team.name.lower()}"
     if name in _CARDS:
         whistle.card(robot, _CARDS[name])
     else:

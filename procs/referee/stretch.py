@@ -22,16 +22,17 @@ class Stretch:
         """Set piece at the beginning; PLAY if no robot took it in its time."""
         self.excused = excused
         self.touches = Touches(ball)
+        self.released = False
+        """The ball of the set piece has rolled so far that it was set free."""
         self._carrier = Carrier()
         self._book = RuleBook()
         self._advantage = Advantage()
-        self._released = False
         self._resting_at = ball  # where the ball was when it was last seen to move on
         self._resting_s = 0.0
 
     def watch(self, duration_s: float, sight: Sight, ends: Ends, rules: Rules) -> Scene:
         """Takes a tick of `duration_s`, and returns it as the rules see it."""
-        self.touches.watch(sight, ends, self._released, rules.pass_m)
+        self.touches.watch(sight, ends, self.released, rules.pass_m)
         self._carrier.watch(duration_s, sight)
         return Scene(duration_s, sight, rules, ends, self.touches, self._carrier)
 
@@ -42,7 +43,7 @@ class Stretch:
         """
         rolled = math.dist(ball, self.touches.place) >= rules.moved_m
         taken = bool(self.touches.robots) and self.piece not in (State.PLAY, State.DROP_BALL)
-        self._released = self._released or (taken and rolled)
+        self.released = self.released or (taken and rolled)
         return rolled
 
     def begin_play(self, ball: Point) -> None:

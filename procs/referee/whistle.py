@@ -65,6 +65,7 @@ class Whistle:
         self.calls: list[Call] = []
         self._left_at: Point | None = None  # by the ball: where it was when the game was last stopped
         self._changing_ends = False
+        self._starting = False  # the game starts as soon as the ball is on its spot
         self._since_placed_s = 0.0
         self._repeats = 0
         self._stretch = Stretch(self.state, self.spot)
@@ -132,7 +133,7 @@ class Whistle:
             self.interrupt(restarts.ball_left_there(self._left_at or ball, self.rules.field), "by hand")
         elif not self.at_rest:
             self._enter(self.state, self.team, stopped=True)
-        self.held = True
+        self.held, self._starting = True, False
 
     def end_half(self) -> None:
         """Ends the half, and the match if no other follows."""
@@ -158,12 +159,15 @@ class Whistle:
         """Stops the game for a set piece and has the ball placed."""
         self._repeats = self._repeats + 1 if restart == self.restart and not self.stopped else 0
         self._enter(restart.state, restart.team, stopped=True)
-        self.spot, self.held = restart.spot, False
+        self.spot, self.held, self._starting = restart.spot, False, False
         self.calls.append(Call(restart.state, restart.team, robot=robot, reason=reason))
         self._place()
 
     def start(self, sight: Sight | None = None) -> None:
-        """Lets the set piece be taken."""
+        """Lets the set piece be taken; a ball that was just given to the crew is waited for."""
+        self._starting = sight is not None and self._is_carried(sight.ball)
+        if self._starting:
+            return
         self._enter(self.state, self.team, stopped=False)
         self.held = self._changing_ends = False
         excused = self._misplaced(sight) if sight else []
@@ -219,16 +223,23 @@ class Whistle:
                 self._play(sight.ball)
 
     def _guard_ball(self, duration_s: float, sight: Sight) -> None:
-        """Has the ball put back if a robot has pushed it away."""
+        """Has the ball put back if a robot has pushed it away; starts the game if that was to happen with the ball."""
         self._since_placed_s += duration_s
-        if math.dist(sight.ball, self.spot) > _MISPLACED_M and self._since_placed_s > _CREW_S:
+        if self._starting:
+            self.start(sight)
+        elif math.dist(sight.ball, self.spot) > _MISPLACED_M and self._since_placed_s > _CREW_S:
             self._place()
+
+    def _is_carried(self, ball: Point) -> bool:
+        """Returns whether the crew has not had the time to put the ball on its spot."""
+        return self.stopped and self._since_placed_s <= _CREW_S and math.dist(ball, self.spot) > _MISPLACED_M
 
     def _wait_for_robots(self, duration_s: float, sight: Sight) -> None:
         self._guard_ball(duration_s, sight)
         rules = self.rules
         stoppage_s = rules.kick_off_stoppage_s if self.state is State.KICK_OFF else rules.stoppage_s
-        if self.held or self.time_in_state_s < stoppage_s or self._too_few(sight):
+        waits = self.held or self._starting or self.time_in_state_s < stoppage_s
+        if not self.stopped or waits or self._too_few(sight):
             return
         patience_s = rules.ends_s if self._changing_ends else rules.positions_s
         if self.time_in_state_s < stoppage_s + patience_s and self._misplaced(sight):
@@ -236,8 +247,13 @@ class Whistle:
         self.start(sight)
 
     def _too_few(self, sight: Sight) -> bool:
-        teams = [sight.team(team) for team in (Team.CYAN, Team.MAGENTA)]
-        return any(0 < len(robots) < self.rules.least_robots for robots in teams)
+        """Returns whether a team has too few robots and may get more: for one after red cards, nobody waits."""
+        return any(self._waits_for(team, len(sight.team(team))) for team in (Team.CYAN, Team.MAGENTA))
+
+    def _waits_for(self, team: Team, robots: int) -> bool:
+        away = [robot for robot in self.cards.sent_off if team_number(robot) is team]
+        dismissed, least = len(self.cards.dismissed.intersection(away)), self.rules.least_robots
+        return 0 < robots < least and (robots + dismissed < least or dismissed < len(away))
 
     def _watch(self, duration_s: float, sight: Sight) -> None:
         scene = self._stretch.watch(duration_s, sight, self.ends, self.rules)
@@ -290,21 +306,30 @@ class Whistle:
             scene.sight.ball, self.rules
         ):
             self._play(scene.sight.ball)
-        elif self.state is State.PENALTY:
-            if not scene.touches.robots and self.time_in_state_s >= self.rules.penalty_s:
+        elif self.state is State.PENALTY and not scene.touches.robots:
+            if self.time_in_state_s >= self.rules.penalty_s:
                 self.interrupt(self._goal_kick(), "penalty not taken in time")
-        elif self.time_in_state_s >= self.rules.set_piece_s:
+        elif self.time_in_state_s >= (self.rules.penalty_s if self.state is State.PENALTY else self.rules.set_piece_s):
             self._play(scene.sight.ball)
 
     def _watch_penalty(self, scene: Scene) -> None:
-        """Watches one of the penalties that decide a match: it ends with a goal, out, the keeper's save or in time."""
+        """Watches one of the penalties that decide a match: a goal, the ball out, a further touch or time ends it.
+
+        It is one shot: after it no robot of the shooting team may touch the ball, whoever else has.
+        """
         assert self.shootout
+        foul = breach(scene, self.restart, self._stretch.excused)
+        if foul and self._repeats < _REPEATS:
+            self._warn(foul)
+            self.interrupt(self.restart, foul.reason, foul.robot)
+            return
         left = [event for event in scene.sight.events if event.kind in (Kind.GOAL, Kind.OUT_SIDE, Kind.OUT_END)]
         attacked = self.ends.side_of(self.team.other)
-        scored = any(event.kind is Kind.GOAL and event.x_m * attacked > 0 for event in left)
+        again = self._stretch.released and any(team_number(robot) is self.team for robot in scene.sight.touching)
+        scored = not again and any(event.kind is Kind.GOAL and event.x_m * attacked > 0 for event in left)
         self._stretch.rolled(scene.sight.ball, self.rules)
         late = not scene.touches.robots and self.time_in_state_s >= self.rules.penalty_s
-        missed = bool(left) or late or scene.touches.again or self.time_in_state_s >= self.rules.shot_s
+        missed = bool(left) or late or again or self.time_in_state_s >= self.rules.shot_s
         if scored or missed:
             self.end_penalty(scored)
 

@@ -112,6 +112,8 @@ def _mistakes(scenario: Scenario) -> list[str]:
     except ValidationError as error:
         found += texts_of(error, "rules", list(RefereeConfig.model_fields))
     found += settings_mistakes(scenario.settings, configs)
+    if CREW in scenario.settings:
+        found.append(f"settings: {CREW} has its actions under commands")
     for text in (*scenario.eventually, *scenario.in_order, *scenario.always, *scenario.at_end):
         try:
             Expression(text, WORDS)
@@ -135,9 +137,10 @@ def _unknown_in(scenario: Scenario) -> list[str]:
     system.tick()
     for text in (*scenario.eventually, *scenario.in_order, *scenario.always, *scenario.at_end):
         try:
-            Expression(text, WORDS).value(system.newest)
+            Expression(text, WORDS).holds(system.newest)
         except ExpressionError as error:
-            if isinstance(error.__cause__, (AttributeError, KeyError, OverflowError, RecursionError, TypeError)):
+            cause = error.__cause__
+            if cause is None or isinstance(cause, (AttributeError, KeyError, OverflowError, RecursionError, TypeError)):
                 found.append(str(error))
     return found
 
@@ -192,7 +195,11 @@ def run(path: Path) -> Verdict:
         ScenarioError: the file is not a scenario.
         ExpressionError: a condition cannot be understood.
     """
-    return outcome(read(path))
+    scenario = read(path)
+    try:
+        return outcome(scenario)
+    except ExpressionError as error:
+        raise ExpressionError(f"{path}: {error}") from error
 
 
 def outcome(scenario: Scenario) -> Verdict:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
+from numbers import Real
 from typing import Any
 
 from fwk.testing import reads_messages
@@ -61,8 +62,10 @@ def _reasons(newest: Newest) -> list[str]:
 
 def _place(newest: Newest, what: Any) -> Point:
     """Returns a place: a point, or that of a robot by its name."""
-    if isinstance(what, tuple):
+    if isinstance(what, tuple) and len(what) == 2 and all(isinstance(each, Real) for each in what):
         return Point(*what)
+    if callable(what) or isinstance(what, (Real, tuple, list)):
+        raise TypeError("a place is the ball, a robot by its name, or two numbers as in (1.0, -2.0)")
     robots = newest("world/ground_truth").robots
     for robot in robots:
         if robot.name == str(what):
@@ -81,7 +84,7 @@ def _hardest(newest: Newest) -> float:
 
 
 def _axis(axis: int) -> Callable[[Newest], Callable[[Any], float]]:
-    return reads_messages(lambda newest: lambda what: _place(newest, what)[axis])
+    return reads_messages(lambda newest: lambda place: _place(newest, place)[axis])
 
 
 WORDS: Mapping[str, Callable[..., Any]] = {

@@ -42,10 +42,13 @@ class _WithBall(StateMachine):
 
 
 class Dribble(_WithBall):
-    """Turns to the place, drives there with the ball, mouth forward, and turns to the heading before it is there."""
+    """Turns to the place, drives there with the ball, mouth forward, and turns to the heading before it is there.
+
+    It is there at the nearest place where the robot may stand.
+    """
 
     def _there(self, scene: Scene) -> bool:
-        return math.dist(scene.view.own.place, scene.place) < _THERE_M
+        return math.dist(scene.view.own.place, scene.permitted(scene.place)) < _THERE_M
 
     def _would_pull_the_ball(self, scene: Scene) -> bool:
         way_rad = bearing_rad(scene.view.own.place, scene.place)
@@ -108,6 +111,7 @@ class _Kick(_WithBall):
     missing to the wanted velocity.
     """
 
+    _ONLY_DIRECTION = True  # the place gives the kick its direction; else the ball arrives there
     _TIMEOUT_S = 3.0
     _EXACT = 0.4  # share of the tolerance in which a robot kicks although its aim still improves
     _LEAD_S = 0.03  # from the view to the kick
@@ -154,6 +158,11 @@ class _Kick(_WithBall):
         self._off_rad = off_rad
         self._on_target = abs(off_rad) < tolerance_rad * (self._EXACT if improves else 1.0)
         return scene
+
+    def _place_is_here(self, scene: Scene) -> bool:
+        """Whether the place of a pass is no further away than the ball, so that no kick leads there."""
+        here = math.dist(scene.view.own.place, scene.place) <= scene.view.bodies.held_ball_m
+        return here and not self._ONLY_DIRECTION
 
     def _too_late(self, _scene: Scene) -> bool:
         return self._running_s > self._TIMEOUT_S
@@ -204,11 +213,17 @@ class _Kick(_WithBall):
         State(
             "turn",
             _turn,
-            (_WithBall._LOST_EXIT, Exit(_too_late, "could not aim in time"), Exit(_ready, "kick")),
+            (
+                _WithBall._LOST_EXIT,
+                Exit(_place_is_here, "the place is at the robot itself"),
+                Exit(_too_late, "could not aim in time"),
+                Exit(_ready, "kick"),
+            ),
         ),
         State("kick", _kick, (Exit(_asked, "wait for the kicker"),)),
         State("wait for the kicker", _hold, _ANSWERED),
         State("kicked", _end, status=Status.FINAL),
+        State("the place is at the robot itself", status=Status.FAILED),
         State("could not aim in time", status=Status.FAILED),
         _WithBall._LOST,
     )
@@ -245,6 +260,8 @@ class Lob(Shoot):
 
 class Pass(_Kick):
     """Kicks so that the ball arrives at the place at a speed that a robot can take."""
+
+    _ONLY_DIRECTION = False
 
     def _speed_m_s(self, scene: Scene, distance_m: float) -> float:
         bodies = scene.view.bodies

@@ -14,6 +14,7 @@ _AHEAD_M_S, _AHEAD_M = 0.5, 1.0
 _BESIDE_M = 0.15  # room beside a robot that drives ahead
 _STRIP_M = 1.0  # a line ahead, at most so far to the side, shows that the field goes on
 _THERE_M = 0.3
+_WAY_S = 10.0  # across the field; a robot that is not there by then looks from where it is
 _LOOK_S = 0.6
 _VANTAGE = ((-0.55, 0.45), (-0.55, -0.45), (0.0, 0.55), (0.0, -0.55), (0.55, 0.45), (0.55, -0.45))
 _IDLE = ("goalkeeper", "absent")
@@ -23,7 +24,8 @@ class Search(StateMachine):
     """Finds the own place, then the ball.
 
     A robot that does not know its place stands, turns on the spot, and drives a short way where it sees free ground. A
-    robot that knows it goes to the place of the command, then to its share of the vantage points, and looks from each.
+    robot that knows it goes to the place of the command, then to its share of the vantage points, and looks from each,
+    or from the nearest place that it reaches.
     """
 
     def __init__(self) -> None:
@@ -63,7 +65,10 @@ class Search(StateMachine):
         return not way_is_free(scene, _AHEAD_M - self._in_state_s() * _AHEAD_M_S)
 
     def _there(self, scene: Scene) -> bool:
-        return math.dist(scene.view.own.place, self._target(scene)) < _THERE_M
+        return math.dist(scene.view.own.place, scene.permitted(self._target(scene))) < _THERE_M
+
+    def _went_in_vain(self, _scene: Scene) -> bool:
+        return self._in_state_s() >= _WAY_S
 
     def _looked(self, _scene: Scene) -> bool:
         """Whether the robot has looked long enough; its next place is another one then."""
@@ -104,7 +109,10 @@ class Search(StateMachine):
         State(
             "look for the ball",
             exits=(Exit(_lost, "find the own place"), Exit(_ball_known, "found")),
-            inside=(State("go", _go, (Exit(_there, "look"),)), State("look", _go, (Exit(_looked, "go"),))),
+            inside=(
+                State("go", _go, (Exit(_there, "look"), Exit(_went_in_vain, "look"))),
+                State("look", _go, (Exit(_looked, "go"),)),
+            ),
         ),
         State("found", _found, status=Status.FINAL),
     )

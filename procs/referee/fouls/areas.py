@@ -1,6 +1,6 @@
 """Areas: one field player of a team, for 10 s at most, in a penalty area; only its goalkeeper in a goal area (2016).
 
-In the opponents' areas a goalkeeper is a field player.
+In the opponents' areas a goalkeeper is a field player. A robot that is alone keeps its own goal, too.
 """
 
 from procs.model.field import SIDES
@@ -17,7 +17,7 @@ class Areas:
 
     def watch(self, scene: Scene) -> Foul | None:
         """Returns the foul of the robot that has been where it may not for the longest time."""
-        keepers = {side: scene.sight.goalkeeper(scene.ends.defender(side)) for side in SIDES}
+        keepers = {side: next(iter(scene.sight.team(scene.ends.defender(side))), "") for side in SIDES}
         inside = {
             name: side
             for name in sorted(scene.sight.robots)

@@ -14,7 +14,8 @@ def breach(scene: Scene, restart: Restart, excused: frozenset[str]) -> Foul | No
     if restart.team is Team.NONE:
         return None
     rivals = [name for name in scene.sight.touching if team_number(name) is restart.team.other]
-    if rivals and not scene.touches.robots & set(scene.sight.team(restart.team)):
+    taken = any(team_number(name) is restart.team for name in scene.touches.robots)  # by one that has left since, too
+    if rivals and not taken:
         return Foul(min(rivals), "touch before the set piece was taken", restart.spot)
     if scene.touches.robots:
         return None

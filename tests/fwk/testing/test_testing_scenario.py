@@ -85,7 +85,7 @@ def test_condition_too_deep_to_be_read() -> None:
     [
         ("world.other.score", "'world.other.score': there is no 'world/other'"),
         ("world.state.scor", r"SimpleNamespace has no 'scor'; did you mean 'score'\?"),
-        ("r1.pose.x_m > 'a'", "not supported"),
+        ("r1.pose.x_m > 'a'", "'>' compares two numbers, but 'a' is a text"),
         ("r1.pose.x_m > 1 or world.other.score", "'world/other'"),
         ("r1.pose.x_m < 1 and world.state.goals", "has no 'goals'; there is names, score"),
         ("2 < r1.pose.x_m < world.other.score", "'world/other'"),

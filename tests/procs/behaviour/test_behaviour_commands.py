@@ -28,6 +28,10 @@ def found(**command: Any) -> str:
             {"skill": "goto", "x_m": -11.7, "y_m": 0.5},
             "(-11.7, 0.5) is behind a goal; at that y_m x_m can be from -10.9 to 10.9",
         ),
+        (
+            {"skill": "dribble", "x_m": 11.2},
+            "(11.2, 0) is in a goal; at that y_m x_m can be from -10.9 to 10.9",
+        ),
         ({"skill": "pass", "x_m": 12.5}, "x_m is 12.5; between the walls the place can be from -12 to 12"),
         ({"skill": "pass", "speed_m_s": -3.0}, "speed_m_s is -3; it should be above 0, or 0 for the skill's own speed"),
         ({"skill": "goto", "speed_m_s": -1.0}, "speed_m_s is -1; it should be above 0, or 0 for the skill's own speed"),
@@ -44,9 +48,10 @@ def test_pass_faster_than_the_kicker_can_is_a_mistake() -> None:
     assert not found(skill="pass", speed_m_s=fastest_m_s - 0.1)
 
 
-def test_goto_that_the_agent_orders_stays_before_a_goal() -> None:
-    assert accepted_place("goto", Point(11.3, 0.4), FIELD, USUAL) == (10.9, 0.4)
-    assert accepted_place("goto", Point(11.3, 2.0), FIELD, USUAL) == (11.3, 2.0)
+@pytest.mark.parametrize("skill", ["goto", "dribble"])
+def test_drive_that_the_agent_orders_stays_before_a_goal(skill: str) -> None:
+    assert accepted_place(skill, Point(11.3, 0.4), FIELD, USUAL) == (10.9, 0.4)
+    assert accepted_place(skill, Point(11.3, 2.0), FIELD, USUAL) == (11.3, 2.0)
 
 
 def test_place_that_is_only_aimed_at_may_lie_outside() -> None:

@@ -28,7 +28,7 @@ def test_nearest_robot_chases_and_others_stay_behind_the_ball() -> None:
 
 @pytest.mark.parametrize(("x_m", "skill"), [(6.0, "shoot"), (-3.0, "dribble")])
 def test_robot_with_the_ball_shoots_or_drives_to_the_goal(x_m: float, skill: str) -> None:
-    seen = view(robot("cyan2", x_m, 0.0), ball(x_m + 0.3, 0.0))
+    seen = view(robot("cyan2", x_m, 0.0), ball(x_m + 0.3, 0.0), OTHERS)
     assert decide(seen, PLAY, True, FIELD)[1].skill == skill
 
 
@@ -52,13 +52,30 @@ def test_robots_line_up_in_half_the_room_of_half_the_field() -> None:
         Field(length_m=11.0, width_m=7.0),
         Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(5, 0)),
     )
-    place = decide(view(robot("cyan5", 1.2, 0.0), ball(5.0, 0.0)), game, False, field)[1].place
+    place = decide(view(robot("cyan5", 1.2, 0.0), ball(5.0, 0.0), OTHERS), game, False, field)[1].place
     assert place.x_m == pytest.approx(5.0 - 5 * 0.75)
 
 
 def test_first_robot_keeps_the_goal() -> None:
-    role, order = decide(view(robot("cyan1", -10.0, 0.0), ball(0.0, 0.0)), PLAY, False, FIELD)
+    role, order = decide(view(robot("cyan1", -10.0, 0.0), ball(0.0, 0.0), OTHERS), PLAY, False, FIELD)
     assert (role, order.skill) == ("goalkeeper", "keep_line")
+
+
+@pytest.mark.parametrize("name", ["cyan1", "cyan4"])
+def test_robot_that_is_alone_plays_whatever_its_number(name: str) -> None:
+    alone = view(robot(name, -1.0, 0.0), ball(0.0, 0.0))
+    assert decide(alone, PLAY, False, FIELD)[1].skill == "get_ball"
+    assert decide(alone, PLAY, True, FIELD)[1].skill == "push", "a dribble of three metres would not do"
+    game = Game(State.GOAL_KICK, stopped=False, whose=Whose.OURS, spot=Point(-7.4, 3.5))
+    assert decide(alone, game, False, FIELD)[1].skill == "get_ball"
+    assert decide(alone, game, True, FIELD)[1].skill == "push", "no shot from the own half counts"
+    near = alone._replace(own=robot(name, 5.0, 0.0))
+    assert decide(near, PLAY, True, FIELD)[1].skill == "shoot"
+
+
+def test_robot_whose_mates_are_silent_is_not_alone() -> None:
+    seen = view(robot("cyan1", -10.0, 0.0), ball(0.0, 0.0))._replace(silent_mates=OTHERS)
+    assert decide(seen, PLAY, False, FIELD)[0] == "goalkeeper"
 
 
 @pytest.mark.parametrize("name", ["cyan2", "cyan3", "cyan5"])
@@ -71,7 +88,7 @@ def test_distance_is_kept_at_the_other_teams_set_piece(name: str) -> None:
 
 def test_second_robot_takes_the_own_set_piece() -> None:
     game = Game(State.FREE_KICK, stopped=False, whose=Whose.OURS, spot=Point(1.0, 1.0))
-    seen = view(robot("cyan2", 0.0, 1.0), ball(1.0, 1.0))
+    seen = view(robot("cyan2", 0.0, 1.0), ball(1.0, 1.0), (robot("cyan4", -4.0, 2.0),))
     assert decide(seen, game, False, FIELD)[1].skill == "get_ball"
     assert decide(seen._replace(own=robot("cyan3", 0.0, 1.0)), game, False, FIELD)[1].skill == "goto"
 

@@ -79,6 +79,21 @@ def test_robot_in_the_way_ends_the_drive() -> None:
     assert states(search, met, 3.0) == ["turn"]
 
 
+def test_robot_looks_from_the_nearest_place_that_is_permitted() -> None:
+    at_the_line = SCENE._replace(
+        view=LOST._replace(localized=True, own=robot("cyan2", 10.8, 0.0)),
+        place=Point(11.4, 0.0),  # where the ball was seen last
+        permitted=lambda place: Point(min(place.x_m, 10.9), place.y_m),
+    )
+    assert states(Search(), at_the_line, 1.0) == ["look", "go"]
+
+
+def test_robot_whose_way_is_blocked_looks_from_where_it_is() -> None:
+    blocked = SCENE._replace(view=LOST._replace(localized=True, own=robot("cyan2", 3.0, 0.5)), place=Point(3.0, 0.0))
+    assert states(Search(), blocked, 9.8) == ["go"]
+    assert states(Search(), blocked, 12.0) == ["go", "look", "go"]
+
+
 def test_localized_robot_goes_to_its_place_then_to_vantages() -> None:
     search, place = Search(), Point(-2.0, 3.0)
     targets: list[Point] = []

@@ -10,7 +10,7 @@ from procs.behaviour.skills.book import Machine
 from procs.behaviour.skills.getting import GetBall, Intercept
 from procs.behaviour.skills.keeping import KeepGoal, KeepLine
 from procs.behaviour.skills.moving import Goto, Mark
-from procs.behaviour.skills.playing import Aim, Dribble, Lob, Pass, Shoot
+from procs.behaviour.skills.playing import Aim, Dribble, Lob, Pass, Push, Shoot
 from procs.behaviour.skills.skill import Drive, Scene, Status, Step
 from procs.behaviour.view import Ball, View
 from procs.model.ball import BALL
@@ -119,6 +119,24 @@ def test_dribble_drives_mouth_first_and_fails_without_the_ball() -> None:
     lost = [skill.step(held._replace(holds_ball=False)).status for _ in range(8)]
     assert lost[:5] == [Status.RUNNING] * 5
     assert lost[-1] is Status.FAILED
+
+
+def test_dribble_ends_at_the_nearest_place_that_is_permitted() -> None:
+    edge = Point(10.0, 0.0)
+    near = scene(view(robot("cyan2", 9.9, 0.0), ball(10.23, 0.0)), 10.7, 0.0, holds_ball=True)
+    near = near._replace(permitted=lambda _: edge)
+    assert Dribble().step(near).status is Status.FINAL
+    far = near._replace(view=view(robot("cyan2", 9.5, 0.0), ball(9.83, 0.0)))
+    assert Dribble().step(far).status is Status.RUNNING
+
+
+@pytest.mark.parametrize(("skill", "status"), [(Pass, Status.FAILED), (Push, Status.FAILED), (Shoot, Status.RUNNING)])
+@pytest.mark.parametrize("x_m", [0.0, 0.25])
+def test_pass_to_the_robot_itself_fails(skill: type[Pass | Shoot], status: Status, x_m: float) -> None:
+    step = skill().step(scene(view(OWN, ball(0.33, 0.0)), x_m, 0.0, holds_ball=True))
+    assert step.status is status
+    if status is Status.FAILED:
+        assert (step.reason, step.kick_m_s) == ("the place is at the robot itself", 0.0)
 
 
 def test_aim_turns_to_the_place_and_waits_there_without_a_kick() -> None:

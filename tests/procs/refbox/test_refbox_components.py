@@ -201,6 +201,36 @@ def test_nonsense_of_a_refbox_is_named(refbox: socket.socket) -> None:
     bench.finalize()
 
 
+def test_refused_commands_of_a_tick_are_one_line(refbox: socket.socket) -> None:
+    components = {"world/refbox": RefBoxClient, "world/referee": Referee, "world/simulator": Simulator}
+    system = MemorySystem(components, settings={"world/refbox": {"port": refbox.getsockname()[1]}})
+    system.tick()
+    connection, _ = refbox.accept()
+    with connection:
+        connection.sendall(say("SUBGOAL", CYAN) * 500)
+        for _ in range(100):
+            system.tick()
+            if any("does not obey" in line.text for line in system.logged):
+                break
+        system.tick(20)
+    system.runners["world/refbox"].component.finalize()
+    lines = [line.text for line in system.logged if "does not obey" in line.text]
+    assert len(lines) < 10
+    assert any(line.endswith(" more)") for line in lines)
+
+
+def test_server_listens_on_an_ipv6_address() -> None:
+    try:
+        socket.create_server(("::1", 0), family=socket.AF_INET6).close()
+    except OSError:
+        pytest.skip("the machine has no such addresses")
+    bench = Bench(RefBoxServer, "world/refbox", host="::1", port=0)
+    with contextlib.closing(socket.create_connection(("::1", bench.component.port), timeout=5.0)) as station:
+        show(bench, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, True)
+        assert b"WELCOME" in station.recv(4096)
+    bench.finalize()
+
+
 def test_robots_have_the_numbers_of_the_players(refbox: socket.socket) -> None:
     players = {"anna": {"team": "magenta", "number": 7}}
     bench = Bench(RefBoxClient, "world/refbox", port=refbox.getsockname()[1], players=players)

@@ -135,3 +135,39 @@ def test_break_ends_the_match_if_no_half_follows_any_more() -> None:
     assert ask(script, "subgoal", "magenta") == ""
     script.wait(1.0)
     assert (script.state[0], script.score) == (State.FROZEN, (1, 0))
+
+
+@pytest.mark.parametrize("automatic", [True, False])
+def test_start_right_after_a_set_piece_waits_for_the_ball(automatic: bool) -> None:
+    script = Script(automatic=automatic)
+    script.tick()
+    script.ball = Point(5.0, 3.0)
+    sight = Sight(script.ball, robots=script.robots)
+    assert carry_out(script.whistle, sight, "corner", "cyan") == ""
+    assert carry_out(script.whistle, sight, "start") == ""
+    assert script.state == (State.CORNER_KICK, CYAN, True)
+    script.tick()
+    assert script.state == (State.CORNER_KICK, CYAN, False)
+    script.tick()
+    assert script.state == (State.CORNER_KICK, CYAN, False), "the way of the crew is no way of the ball"
+
+
+def test_start_does_not_wait_long_for_the_ball() -> None:
+    script = Script(automatic=False)
+    script.placed = script.whistle.placements + 1  # by no crew
+    script.ball = Point(5.0, 3.0)
+    sight = Sight(script.ball, robots=script.robots)
+    carry_out(script.whistle, sight, "corner", "cyan")
+    carry_out(script.whistle, sight, "start")
+    for _ in range(20):
+        script.whistle.step(0.05, sight)
+    assert not script.whistle.stopped
+
+
+def test_stop_takes_back_a_start_that_waits() -> None:
+    script = Script(automatic=False)
+    sight = Sight(Point(5.0, 3.0), robots=script.robots)
+    for name, team in (("corner", "cyan"), ("start", ""), ("stop", "")):
+        assert carry_out(script.whistle, sight, name, team) == ""
+    script.wait(1.0)
+    assert script.state == (State.CORNER_KICK, CYAN, True)

@@ -5,6 +5,8 @@ import importlib
 import pytest
 
 from procs.model.field import Point
+from procs.referee import restarts
+from procs.referee.cards import Card
 from procs.referee.orders import carry_out
 from procs.referee.restarts import State
 from procs.referee.rules import Rules
@@ -40,10 +42,18 @@ CASES = {
         "rules.test_positions_of_robots_at_a_set_piece",
         "fouls.test_dropped_ball_goal_needs_two_robots",
     ],
-    "penalty: reached within 10 s": ["match.test_penalty_that_is_not_taken_becomes_a_goal_kick"],
+    "penalty: reached within 10 s": [
+        "match.test_penalty_that_is_not_taken_becomes_a_goal_kick",
+        "match.test_penalty_that_is_touched_but_not_shot_becomes_play",
+    ],
     "penalty: the keeper stays in its area": ["match.test_penalty_is_repeated_when_the_keeper_leaves_its_area"],
     "penalty: a goal without a second robot": ["match.test_penalty_goal_counts_without_a_second_robot"],
-    "deciding penalty: one shot": ["cases.test_deciding_penalty_is_one_shot"],
+    "deciding penalty: one shot": [
+        "cases.test_deciding_penalty_is_one_shot",
+        "cases.test_rebound_of_a_deciding_penalty_is_a_miss",
+        "cases.test_deciding_penalty_off_the_keeper_is_a_goal",
+        "cases.test_keeper_at_the_ball_first_repeats_a_deciding_penalty",
+    ],
     "deciding penalty: within 30 s": ["cases.test_deciding_penalty_ends_after_thirty_seconds"],
     "holding for 1 s, over 0.30 m, again after less than 4 s": [
         "fouls.test_holding_the_ball_still_for_a_second_is_a_foul",
@@ -118,6 +128,37 @@ def test_deciding_penalty_is_one_shot() -> None:
     assert (script.whistle.team, script.reasons) == (MAGENTA, ["missed"])
 
 
+@pytest.mark.parametrize("robot", ["cyan2", "cyan3"])
+def test_rebound_of_a_deciding_penalty_is_a_miss(robot: str) -> None:
+    script = penalties()
+    script.touch("cyan2", Kind.KICK)
+    script.roll(9.5, 0.0)
+    script.touch("magenta1")
+    script.roll(8.5, 0.0)
+    assert script.whistle.team is CYAN, "the ball may still roll in"
+    script.touch(robot)
+    script.goal(11.2, robot)
+    assert (script.whistle.team, script.score, script.reasons) == (MAGENTA, (0, 0), ["missed"])
+
+
+def test_deciding_penalty_off_the_keeper_is_a_goal() -> None:
+    script = penalties()
+    script.touch("cyan2", Kind.KICK)
+    script.roll(10.0, 0.0)
+    script.touch("magenta1")
+    script.goal(11.2, "magenta1")
+    assert script.score == (1, 0)
+
+
+def test_keeper_at_the_ball_first_repeats_a_deciding_penalty() -> None:
+    script = penalties()
+    script.touch("magenta1")
+    assert script.state == (State.PENALTY, CYAN, True)
+    assert script.reasons == ["touch before the set piece was taken"]
+    assert script.whistle.shootout
+    assert script.whistle.shootout.shots == {CYAN: 0, MAGENTA: 0}
+
+
 def test_deciding_penalty_ends_after_thirty_seconds() -> None:
     script = penalties()
     script.touch("cyan2")
@@ -134,6 +175,23 @@ def test_match_waits_for_two_robots_of_each_team() -> None:
     assert script.whistle.stopped
     script.robots["magenta2"] = away["magenta2"]
     script.tick()
+    assert not script.whistle.stopped
+
+
+def test_match_does_not_wait_for_a_robot_with_a_red_card() -> None:
+    script = Script(least_robots=2, repair_s=20.0)
+    for name in ("cyan3", "magenta3"):
+        del script.robots[name]
+    script.started()
+    script.whistle.card("cyan1", Card.RED)
+    script.whistle.interrupt(restarts.after_foul(Point(1.0, 1.0), CYAN, script.whistle.rules.field))
+    script.wait(5.0)
+    assert not script.whistle.stopped
+    script.whistle.take_out("magenta1", "repair")
+    script.whistle.interrupt(restarts.after_foul(Point(1.0, 1.0), CYAN, script.whistle.rules.field))
+    script.wait(19.0)
+    assert script.whistle.stopped, "one under repair comes back"
+    script.wait(3.0)
     assert not script.whistle.stopped
 
 

@@ -124,6 +124,7 @@ def test_stop_by_hand_holds_the_game_until_start() -> None:
         ({"name": "freekick", "team": "red"}, "no team 'red'; there are cyan, magenta"),
         ({"name": "subgoal", "team": "cyan"}, "cyan has no goal to take back"),
         ({"name": "yellow_card", "robot": "cyan9"}, "no robot 'cyan9'; there are none"),
+        ({"name": "red_card", "team": "cyan"}, "a red card needs a robot; there are none"),
         ({"name": "start"}, "nothing to start: the game runs, or has a break"),
     ],
 )
@@ -265,6 +266,14 @@ def test_robot_is_named_by_its_namespace_in_answers() -> None:
     bench.iterate()
     answer = bench.port("referee_command").sent[-1].answer
     assert answer.reason == "no robot 'cyan1'; there are anna, bert, cyan2, dora"
+
+
+def test_robot_of_the_other_team_is_not_the_one_meant() -> None:
+    bench = with_names()
+    bench.port("referee_command").put(name="yellow_card", team="cyan", robot="dora")
+    bench.iterate()
+    assert bench.port("referee_command").sent[-1].answer.reason == "dora does not play for cyan"
+    assert not [event for event in history(bench) if event.card]
 
 
 def test_what_plays_in_neither_team_commits_no_foul() -> None:

@@ -21,6 +21,15 @@ def test_set_piece_goal_counts_only_after_a_second_robot() -> None:
     assert script.reasons == ["no second robot touched the ball"]
 
 
+def test_taker_that_has_left_has_taken_the_set_piece() -> None:
+    script = Script().started()
+    script.touch("cyan2")
+    script.whistle.take_out("cyan2", "repair")
+    script.roll(0.3, 0.0)
+    script.touch("magenta2")
+    assert (script.state, script.reasons) == ((State.KICK_OFF, CYAN, False), [])
+
+
 def test_set_piece_goal_counts_after_a_mate_played() -> None:
     script = Script().playing()
     script.roll(2.0, 0.0)
@@ -253,6 +262,16 @@ def test_areas(places: dict[str, Point], time_s: float, reason: str) -> None:
     script.robots |= places
     script.wait(time_s)
     assert script.reasons == ([reason] if reason else [])
+
+
+@pytest.mark.parametrize(("x_m", "reasons"), [(-10.6, []), (10.6, ["goal area"])])
+def test_robot_that_is_alone_keeps_its_own_goal(x_m: float, reasons: list[str]) -> None:
+    script = Script(deadlock_s=60.0).playing()
+    for mate in ("cyan1", "cyan3"):
+        del script.robots[mate]
+    script.robots["cyan2"] = Point(x_m, 1.5)
+    script.wait(1.5)
+    assert script.reasons == reasons
 
 
 @pytest.mark.parametrize(("speed_m_s", "foul"), [(0.5, True), (0.0, False)])

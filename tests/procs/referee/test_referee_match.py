@@ -4,6 +4,7 @@ import pytest
 
 from procs.model.field import Point
 from procs.referee.cards import Card
+from procs.referee.ends import Team
 from procs.referee.restarts import State
 from procs.referee.shootout import Shootout
 from procs.simulation.physics.events import Event, Kind
@@ -33,6 +34,15 @@ def test_penalty_that_is_not_taken_becomes_a_goal_kick() -> None:
     assert script.state == (State.PENALTY, CYAN, False)
     script.wait(0.4)
     assert script.state == (State.GOAL_KICK, MAGENTA, True)
+
+
+def test_penalty_that_is_touched_but_not_shot_becomes_play() -> None:
+    script = penalty()
+    script.touch("cyan2")
+    script.wait(9.8)
+    assert script.state == (State.PENALTY, CYAN, False)
+    script.wait(0.4)
+    assert script.state == (State.PLAY, Team.NONE, False), "whoever may play, the taker may have crashed with the ball"
 
 
 def test_penalty_is_repeated_when_the_keeper_leaves_its_area() -> None:

@@ -1,10 +1,12 @@
 """All scenarios of the book succeed, and their runner says what goes wrong."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 
+from fwk.testing import ExpressionError
 from procs.scenarios import __main__ as command
 from procs.scenarios import evaluation
 from procs.scenarios.scenario import BOOK, ScenarioError, read, run
@@ -58,14 +60,19 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
         ("rules: {half: 1}", ScenarioError, "rules: no key 'half'; did you mean 'half_s'?"),
         ("settings: {cyan2/agent: {}}\nrobots: [cyan1]", ScenarioError, "no component 'cyan2/agent'; did you mean"),
         ("settings: {world/referee: {half_s: -1}}", ScenarioError, "world/referee.half_s: Input should be greater"),
+        ("settings: {world/crew: {actions: []}}", ScenarioError, "settings: world/crew has its actions under commands"),
         ("commands: [{at_s: 1}]", ScenarioError, "commands.0: give one of place_ball, place_robot, referee"),
         ("commands: [{place_ball: {x: 1}}]", ScenarioError, "commands.0: place_ball: there is no 'x'; there are x_m"),
         ("commands: [{place_robot: {x_m: left}}]", ScenarioError, "x_m is 'left'; it should be a number"),
         ("robots: [", ScenarioError, "mine.yaml"),
         ("robots: [cyan2]\nplaces: {cyan2: [100, 0, 0]}\nat_end: [ball_speed < 1]", ScenarioError, "outside the walls"),
-        ("dummies: [a1, b1]\nplaces: {a1: [0, 0, 0], b1: [0, 0, 0]}\nat_end: [ball]", ScenarioError, "0 m apart"),
+        ("dummies: [a1, b1]\nplaces: {a1: [0, 0, 0], b1: [0, 0, 0]}\nat_end: [touching]", ScenarioError, "0 m apart"),
         ("robots: [cyan2]\nplaces: {cyan2: [.nan, 0, 0]}", ScenarioError, "places.cyan2.0: .* finite number"),
-        ("at_end: [ball]\ntime_s: 1\ncommands: [{at_s: 1, place_ball: {}}]", ScenarioError, "at_s is 1; the scenario"),
+        (
+            "at_end: [reasons]\ntime_s: 1\ncommands: [{at_s: 1, place_ball: {}}]",
+            ScenarioError,
+            "at_s is 1; the scenario",
+        ),
         ("robots: [cyan1]\nat_end: [frobnicate(cyan1)]", ScenarioError, "calls only abs, ball"),
         ("eventually: ['x(ball']", ScenarioError, "never closed"),
         ("dummies: [cyan2]\neventually: [x(cyan3) > 0]", ScenarioError, "no robot 'cyan3'; did you mean 'cyan2'?"),
@@ -119,6 +126,16 @@ def test_command_that_is_refused_breaks_a_scenario(tmp_path: Path) -> None:
     assert refused.startswith("refused: no command 'pause'; there are kickoff")
 
 
+def test_command_has_nothing_of_the_one_before(tmp_path: Path) -> None:
+    text = (
+        "dummies: [cyan2, magenta2]\ncommands:\n  - {at_s: 0.1, place_ball: {x_m: 3, y_m: 2, vy_m_s: 1}}\n"
+        "  - {at_s: 0.2, place_ball: {x_m: 5}}\n  - {at_s: 0.3, referee: {name: goal, team: cyan}}\n"
+        "  - {at_s: 0.4, referee: {name: goal}}\n"
+        "in_order: [abs(y(ball)) > 1, x(ball) > 4.9 and abs(y(ball)) < 0.1 and ball_speed < 0.1]\ntime_s: 0.8\n"
+    )
+    assert run(written(tmp_path, text)).broken == ["refused: a goal needs a team: cyan or magenta"]
+
+
 @pytest.mark.parametrize(
     ("at_s", "condition", "broken"),
     [
@@ -129,6 +146,33 @@ def test_command_that_is_refused_breaks_a_scenario(tmp_path: Path) -> None:
 def test_command_without_an_answer_breaks(tmp_path: Path, at_s: float, condition: str, broken: str) -> None:
     text = f"dummies: [cyan2]\ncommands: [{{at_s: {at_s}, place_ball: {{x_m: 1}}}}]\n{condition}\ntime_s: 0.3\n"
     assert run(written(tmp_path, text)).broken == [broken]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("ball < 3", "'<' compares two numbers, but ball is a Point; take one of its fields, such as ball.x_m"),
+        ("distance(ball)", "distance takes 2 values (one, two); here is 1"),
+        ("x()", "x takes 1 value (place); here are none"),
+        ("x", "x is a function, which always holds; call it: x(...)"),
+        ("ball_speed()", "ball_speed is a number, not a function; write it without brackets"),
+        ("distance(ball, 3) > 1", "a place is the ball, a robot by its name, or two numbers as in (1.0, -2.0)"),
+        ("x((1, 2, 3)) > 1", "a place is the ball, a robot by its name, or two numbers"),
+        ("y(state) > 1", "a place is the ball, a robot by its name, or two numbers"),
+        ("touching == 'cyan2'", "'==' compares values of one kind, but touching is a list and 'cyan2' is a text"),
+        ("world.game_state", "world.game_state is a game_state_t, which always holds"),
+    ],
+)
+def test_type_mistake_in_a_condition_is_named(tmp_path: Path, text: str, message: str) -> None:
+    path = written(tmp_path, f'dummies: [cyan2]\nalways: ["{text}"]\n')
+    with pytest.raises(ScenarioError, match=re.escape(f"{path}: '{text}': {message}")):
+        read(path)
+
+
+def test_condition_that_fails_in_the_run_names_the_file(tmp_path: Path) -> None:
+    path = written(tmp_path, "dummies: [cyan2]\nalways: [\"touching[0] == 'cyan2'\"]\ntime_s: 0.2\n")
+    with pytest.raises(ExpressionError, match=re.escape(f"{path}: 'touching[0] == 'cyan2'': an index is beyond")):
+        run(path)
 
 
 @pytest.mark.parametrize("text", ['state("offside")', "world.game_state.goals", "cyan9.role.value", "2 ** 10 ** 10"])

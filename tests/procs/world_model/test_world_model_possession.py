@@ -43,5 +43,12 @@ def test_opponent_has_a_ball_within_its_mouths_reach(opponent_m: float, deviatio
     assert holder_of(model_with(opponent_m, deviation_m), "a", False, [], NOW_S, MOUTH_M) == holder
 
 
+@pytest.mark.parametrize(("z_m", "holder"), [(0.1, OPPONENT), (0.6, "")])
+def test_ball_that_flies_over_an_opponent_is_not_held(z_m: float, holder: str) -> None:
+    model = model_with(0.1)
+    model.ball.z_m = z_m
+    assert holder_of(model, "a", False, [], NOW_S, MOUTH_M) == holder
+
+
 def test_unknown_ball_has_no_holder_among_opponents() -> None:
     assert holder_of(model_with(0.0, known=False), "a", False, [], NOW_S, MOUTH_M) == ""
