@@ -1,5 +1,8 @@
 """Short descriptions of matches for tests of the behaviour."""
 
+from typing import Any
+
+from fwk.testing import Bench
 from procs.behaviour.roles import Job
 from procs.behaviour.view import Agreement, Ball, Robot, View
 from procs.model.field import Field, Point
@@ -27,3 +30,14 @@ def view(own: Robot, where: Ball, mates: tuple[Robot, ...] = (), opponents: tupl
 
 def job(role: str, x_m: float = 0.0, y_m: float = 0.0) -> Job:
     return Job(role, Point(x_m, y_m))
+
+
+def newest(bench: Bench, port: str) -> Any:
+    return bench.port(port).sent[-1]
+
+
+def put(bench: Bench, port: str, **fields: Any) -> None:
+    """Puts a message of this tick on the bench, which itself leaves the time at zero."""
+    made: Any = bench.port(port).message_type()
+    made.header.time_us = bench.time_us
+    bench.port(port).put(made, **fields)

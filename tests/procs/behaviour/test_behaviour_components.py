@@ -1,6 +1,5 @@
-"""Navigator, skiller and agent on the bench."""
+"""Skiller and agent on the bench, and senseless input of all."""
 
-import itertools
 import math
 from typing import Any
 
@@ -14,7 +13,6 @@ from lcmtypes.soccer import (
     drive_target_t,
     game_state_t,
     mate_estimate_t,
-    navigator_state_t,
     robot_estimate_t,
     skill_status_t,
 )
@@ -23,139 +21,16 @@ from procs.behaviour.navigator import Navigator
 from procs.behaviour.skiller import Skiller
 from procs.behaviour.skills.book import SKILLS
 from procs.referee.referee import Referee
+from tests.procs.behaviour.behaviour_parts import newest
 
 MOUTH_M = 0.33
 """Distance of a ball in the mouth."""
-
-
-def estimate(x_m: float, y_m: float) -> robot_estimate_t:
-    made = robot_estimate_t()
-    made.x_m, made.y_m = x_m, y_m
-    return made
 
 
 def seen_ball(x_m: float, y_m: float) -> ball_estimate_t:
     made = ball_estimate_t()
     made.known, made.x_m, made.y_m = True, x_m, y_m
     return made
-
-
-def newest(bench: Bench, port: str) -> Any:
-    return bench.port(port).sent[-1]
-
-
-def put(bench: Bench, port: str, **fields: Any) -> None:
-    """Puts a message of this tick on the bench, which itself leaves the time at zero."""
-    made: Any = bench.port(port).message_type()
-    made.header.time_us = bench.time_us
-    bench.port(port).put(made, **fields)
-
-
-def navigate(ticks: int = 1, localized: bool = True, **target: Any) -> Bench:
-    bench = Bench(Navigator, "cyan2/navigator")
-    for _ in range(ticks):
-        put(bench, "world_model", localized=localized, heading_rad=math.pi / 2)
-        put(bench, "odometry")
-        put(bench, "drive_target", target_id=7, **target)
-        bench.iterate()
-    return bench
-
-
-def test_navigator_drives_in_its_frame_within_its_acceleration() -> None:
-    bench = navigate(3, x_m=5.0, heading_rad=math.pi / 2)
-    commands = bench.port("motor_command").sent
-    assert all(command.enabled for command in commands)
-    speeds_m_s = [-command.vy_m_s for command in commands]  # east is to the right of a robot that faces north
-    assert speeds_m_s == pytest.approx([0.15, 0.3, 0.45])
-    state = newest(bench, "navigator_state")
-    assert (state.target_id, state.arrived, state.error) == (7, False, navigator_state_t.OK)
-    assert state.distance_m == pytest.approx(5.0)
-
-
-def changes_m_s(held: bool, x_m: float) -> list[float]:
-    """Returns the change of the speed in the first ticks towards a target; the robot faces along x."""
-    bench = Bench(Navigator, "cyan2/navigator")
-    for _ in range(3):
-        put(bench, "world_model", localized=True)
-        put(bench, "odometry")
-        put(bench, "kicker_state", ball_held=held)
-        put(bench, "drive_target", x_m=x_m)
-        bench.iterate()
-    speeds_m_s = [0.0, *(command.vx_m_s for command in bench.port("motor_command").sent)]
-    return [after - before for before, after in itertools.pairwise(speeds_m_s)]
-
-
-def test_robot_with_the_ball_accelerates_most_towards_it() -> None:
-    assert changes_m_s(held=False, x_m=-5.0) == pytest.approx([-0.15] * 3)
-    assert changes_m_s(held=True, x_m=-5.0) == pytest.approx([-0.125] * 3)
-    assert changes_m_s(held=True, x_m=5.0) == pytest.approx([0.2] * 3)
-
-
-def test_robot_turns_about_a_point_near_its_ball() -> None:
-    bench = Bench(Navigator, "cyan2/navigator")
-    put(bench, "world_model", localized=True)
-    put(bench, "odometry")
-    put(bench, "kicker_state", ball_held=True)
-    put(bench, "drive_target", heading_rad=2.0)
-    bench.iterate()
-    command = newest(bench, "motor_command")
-    assert command.omega_rad_s > 0.0
-    assert command.vy_m_s / command.omega_rad_s == pytest.approx(-0.6 * 0.327, abs=0.01)
-
-
-def test_navigator_turns_the_short_way() -> None:
-    assert newest(navigate(3, heading_rad=math.pi), "motor_command").omega_rad_s > 0
-    assert newest(navigate(3, heading_rad=-math.pi * 0.4), "motor_command").omega_rad_s < 0
-
-
-def test_navigator_reports_its_arrival() -> None:
-    assert newest(navigate(x_m=0.02, heading_rad=math.pi / 2), "navigator_state").arrived
-
-
-def test_navigator_keeps_the_speed_limit_of_the_target() -> None:
-    command = newest(navigate(60, x_m=8.0, heading_rad=math.pi / 2, speed_m_s=0.8), "motor_command")
-    assert math.hypot(command.vx_m_s, command.vy_m_s) == pytest.approx(0.8)
-
-
-def test_robot_without_a_pose_stands_still_and_reports_it() -> None:
-    bench = navigate(5, localized=False, x_m=5.0)
-    command = newest(bench, "motor_command")
-    assert (command.vx_m_s, command.vy_m_s, command.omega_rad_s) == (0.0, 0.0, 0.0)
-    assert newest(bench, "navigator_state").error == navigator_state_t.LOST
-
-
-def test_old_target_is_braked_to_a_standstill() -> None:
-    bench = navigate(10, x_m=5.0, heading_rad=math.pi / 2)
-    fast = newest(bench, "motor_command").vy_m_s
-    for _ in range(30):
-        put(bench, "world_model", localized=True, heading_rad=math.pi / 2)
-        bench.iterate()
-    assert abs(fast) > 1.0
-    assert newest(bench, "motor_command").vy_m_s == 0.0
-
-
-def test_opponent_in_the_way_is_driven_around() -> None:
-    bench = Bench(Navigator, "cyan2/navigator")
-    for avoid in (True, False):
-        for _ in range(20):
-            put(bench, "world_model", localized=True, opponents=[estimate(2.0, 0.05)])
-            put(bench, "drive_target", x_m=4.0, avoid_robots=avoid)
-            bench.iterate()
-        command = newest(bench, "motor_command")
-        assert (command.vy_m_s < -0.3) == avoid
-
-
-@pytest.mark.parametrize(
-    ("mate", "role", "reached_m"),
-    [("cyan1", "goalkeeper", 10.15), ("cyan1", "absent", 10.8), ("cyan3", "defender", 10.8)],
-)
-def test_only_goalkeepers_drive_into_goal_areas(mate: str, role: str, reached_m: float) -> None:
-    bench = Bench(Navigator, "cyan2/navigator")
-    mates = [mate_estimate_t(name=mate, role=role)]
-    put(bench, "world_model", localized=True, x_m=10.0, mates=mates)
-    put(bench, "drive_target", x_m=10.8)
-    bench.iterate()
-    assert newest(bench, "navigator_state").distance_m == pytest.approx(reached_m - 10.0)
 
 
 def put_situation(bench: Bench, **fields: Any) -> None:
@@ -376,28 +251,6 @@ def test_senseless_numbers_do_no_harm(component: type[Component], value: float) 
             command = newest(bench, "motor_command")
             assert math.hypot(command.vx_m_s, command.vy_m_s) <= 3.1
             assert abs(command.omega_rad_s) <= 5.1
-
-
-@pytest.mark.parametrize("heading_rad", [math.nan, math.inf])
-def test_blind_robot_that_is_told_no_heading_stands(heading_rad: float) -> None:
-    bench = Bench(Navigator, "cyan2/navigator")
-    bench.port("world_model").put(localized=False)
-    bench.port("blind_drive").put(vx_m_s=1.0, enabled=True)
-    bench.iterate()
-    assert newest(bench, "motor_command").vx_m_s > 0.0
-    for _ in range(40):
-        bench.port("world_model").put(localized=True, heading_rad=heading_rad)
-        bench.iterate()
-        command = newest(bench, "motor_command")
-        assert math.isfinite(command.vx_m_s + command.vy_m_s + command.omega_rad_s)
-    assert (command.vx_m_s, command.vy_m_s, command.omega_rad_s) == (0.0, 0.0, 0.0)
-
-
-def test_stopped_navigator_leaves_the_motors_off() -> None:
-    bench = navigate(5, x_m=5.0, heading_rad=math.pi / 2)
-    bench.finalize()
-    command = newest(bench, "motor_command")
-    assert (command.enabled, command.vx_m_s, command.vy_m_s, command.omega_rad_s) == (False, 0.0, 0.0, 0.0)
 
 
 def test_stopped_skiller_leaves_no_target_kick_or_handling() -> None:
