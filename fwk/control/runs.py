@@ -88,7 +88,7 @@ def find(chosen: str | int | None) -> int:
             return ports[0]
         if ports:
             raise RefusedError(f"several runs are called '{wanted}'; name one by its port: {_listed(runs, ports)}")
-        others = f"; there is {_listed(runs, list(runs))}" if runs else ""
+        others = f"; there {'are' if len(runs) > 1 else 'is'} {_listed(runs, list(runs))}" if runs else ""
         raise RefusedError(f"no run '{wanted}' on this machine{others}")
     if not runs:
         raise ControlError("nothing runs on this machine; start something with: fwk-launch FILE")

@@ -1,6 +1,6 @@
 """Mistakes in launch files, collected so that one check reports them all."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sized
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -92,7 +92,12 @@ def hint(word: str, known: Iterable[str] | Mapping[str, object], otherwise: str 
     if near:
         return f"did you mean '{near[0]}'?"
     more = ", ..." if len(names) > _LISTED else ""
-    return otherwise or (f"there is {', '.join(names[:_LISTED])}{more}" if names else "there is none")
+    return otherwise or (f"{there(names)} {', '.join(names[:_LISTED])}{more}" if names else "there is none")
+
+
+def there(things: Sized) -> str:
+    """Returns how a list of these things begins."""
+    return "there are" if len(things) > 1 else "there is"
 
 
 def _last_part(name: str) -> str:

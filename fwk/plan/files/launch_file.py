@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TypeVar
 
 import fwk
-from fwk.model.errors import Problems
+from fwk.model.errors import Problems, there
 from fwk.plan.files.schema import HostFile, LaunchFile
 from fwk.plan.files.source import Node, read_yaml
 from fwk.plan.files.validation import Path as NodePath
@@ -67,9 +67,9 @@ def find_launch_file(file: str, problems: Problems) -> Path | None:
         if os.path.exists(place / file) and not os.path.isdir(place / file):
             problems.add(shown(place / file), "", "cannot be read: it is not an ordinary file")
             return None
-    there = [name for place in places[1:] for name in _launch_files(place)]
-    near = get_close_matches(file, there, 1)
-    listed = f"there is {', '.join(dict.fromkeys(there))}" if there else "there is none in launch/"
+    found = list(dict.fromkeys(name for place in places[1:] for name in _launch_files(place)))
+    near = get_close_matches(file, found, 1)
+    listed = f"{there(found)} {', '.join(found)}" if found else "there is none in launch/"
     problems.add(file, "", f"no such launch file; {f'did you mean {near[0]!r}? ' if near else ''}{listed}")
     return None
 

@@ -66,6 +66,6 @@ def test_mistakes_end_with_code_2(fwk: typer.Typer) -> None:
     assert (result.exit_code, result.stdout) == (2, "")
     assert result.stderr.splitlines() == [
         "--set: a/wheels: no setting 'gian'; did you mean 'gain'?",
-        "--without: 'c' matches no component; there is a, a/pilot, a/wheels",
+        "--without: 'c' matches no component; there are a, a/pilot, a/wheels",
         "2 mistakes",
     ]

@@ -94,8 +94,8 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
     ),
     Broken(
         """
-        it.yaml:3: it/a: no setting 'gain'; there is key, log_level
-        it.yaml:5: no component 'it/c'; there is it/a, it/b
+        it.yaml:3: it/a: no setting 'gain'; there are key, log_level
+        it.yaml:5: no component 'it/c'; there are it/a, it/b
         it.yaml:6: no component 'itt'; did you mean 'it'?
         """,
         """
@@ -189,7 +189,7 @@ def test_settings(folder: Path, broken: Broken) -> None:
     Broken(
         """
         it.yaml:3: 'cyan 1' is not a valid name; use letters, digits, '_', '-' and '/', such as cyan1/ball
-        it.yaml:5: cyan2/a: '{temm}' in '{temm}' has no value; there is name, namespace, number
+        it.yaml:5: cyan2/a: '{temm}' in '{temm}' has no value; there are name, namespace, number
         """,
         """
         templates: {bot: {b: {use: plan_parts:Odometer}}}

@@ -102,7 +102,7 @@ def test_yaml(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:1: no key 'robots.cyan1.template'; there is config, use, values",
+        "it.yaml:1: no key 'robots.cyan1.template'; there are config, use, values",
         """
         robots: {cyan1: {use: bot, template: bot}}
         templates: {bot: {a: {use: plan_parts:Odometer}}}
@@ -247,7 +247,7 @@ def test_keys_and_values(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.host.yaml:1: no key 'components'; there is clock, config, evaluation, hosts, log, loop_time_s, "
+        "it.host.yaml:1: no key 'components'; there are clock, config, evaluation, hosts, log, loop_time_s, "
         "loop_time_warnings, outside, period_s, public_url, record, runs, ...",
         """
         components: {it/a: {use: plan_parts:Odometer}}

@@ -23,7 +23,7 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """,
     ),
     Broken(
-        "it.yaml:1: it/a: no module 'mine.tracker.inner'; there is mine.tracker, mine.tracker_inner",
+        "it.yaml:1: it/a: no module 'mine.tracker.inner'; there are mine.tracker, mine.tracker_inner",
         """
         components: {it/a: {use: mine.tracker.inner}}
         --- mine/tracker.py
@@ -31,7 +31,7 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """,
     ),
     Broken(
-        "it.yaml:1: it/a: no module 'procs.quux'; there is procs.garden.watering, procs.weeding",
+        "it.yaml:1: it/a: no module 'procs.quux'; there are procs.garden.watering, procs.weeding",
         """
         components: {it/a: {use: procs.quux}}
         --- procs/garden/watering.py

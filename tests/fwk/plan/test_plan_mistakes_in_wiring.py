@@ -120,7 +120,7 @@ def test_channels(folder: Path, broken: Broken) -> None:
 @rows(
     Broken(
         """
-        it.yaml:3: 'b' matches no component; there is a, a/one, a/watcher
+        it.yaml:3: 'b' matches no component; there are a, a/one, a/watcher
         it.yaml:4: 'a/watcher' is a component; give the process of several another name
         it.yaml:5: a/one: it is in two processes, 'left' and 'right'; keep one
         """,
@@ -139,7 +139,7 @@ def test_channels(folder: Path, broken: Broken) -> None:
         {"only": ["a", "a/oen"]},
     ),
     Broken(
-        "--without: 'bb' matches no component; there is a, a/one",
+        "--without: 'bb' matches no component; there are a, a/one",
         "components: {a/one: {use: plan_parts:Odometer}}",
         {"without": ["bb"]},
     ),
@@ -168,10 +168,10 @@ def test_a_missing_file(folder: Path) -> None:
     (folder / "launch" / "garden.yaml").write_text("")
     (folder / "launch" / "garden.host.yaml").write_text("")
     with pytest.raises(
-        PlanError, match=r"^gardn.yaml: no such launch file; did you mean 'garden.yaml'\? there is garden.yaml, "
+        PlanError, match=r"^gardn.yaml: no such launch file; did you mean 'garden.yaml'\? there are garden.yaml, "
     ):
         load_plan("gardn.yaml", LaunchOptions())
-    with pytest.raises(PlanError, match=r"^launch: no such launch file; there is garden.yaml"):
+    with pytest.raises(PlanError, match=r"^launch: no such launch file; there are garden.yaml"):
         load_plan("launch", LaunchOptions())
 
 

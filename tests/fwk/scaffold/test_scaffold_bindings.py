@@ -52,7 +52,7 @@ def test_header_is_valid_cpp_with_its_types(project: Project, needs: Callable[..
 
 
 def test_mistakes_are_explained(project: Project) -> None:
-    with pytest.raises(ScaffoldError, match="no types for 'rust'; there is c, cpp, java"):
+    with pytest.raises(ScaffoldError, match="no types for 'rust'; there are c, cpp, java"):
         generate_bindings(project, "rust", project.root)
     with pytest.raises(ScaffoldError, match=r"no package of message types 'croe'; did you mean 'core'\?"):
         generate_bindings(project, "c", project.root, ["croe"])

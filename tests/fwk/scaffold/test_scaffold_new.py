@@ -85,7 +85,7 @@ def test_a_module_that_would_hide_another_is_refused(project: Project, monkeypat
 @pytest.mark.parametrize(
     ("request_", "text"),
     [
-        (lambda found: new_component(found, "tap", "dance"), "no kind of component 'dance'; there is aspect,"),
+        (lambda found: new_component(found, "tap", "dance"), "no kind of component 'dance'; there are aspect,"),
         (lambda found: new_component(found, "tap", launch="gardn"), "no launch file 'gardn'"),
         (lambda found: new_launch(found, "trial", ["sensr"]), "did you mean 'sensor'?"),
         (lambda found: new_launch(found, "trial", namespace="a/b"), "'a/b' is not a namespace"),

@@ -48,7 +48,7 @@ def test_value_of_a_condition(text: str, value: Any) -> None:
         ("(lambda: 1)()", "calls only|not allowed"),
         ("world.state.names.append(1)", "calls only"),
         ("doubl > 3", r"'doubl > 3': there is no 'doubl'; did you mean 'double'\?"),
-        ("max(wrld, 3) > 3", "there is no 'wrld'; there is abs, double, len"),
+        ("max(wrld, 3) > 3", "there is no 'wrld'; there are abs, double, len"),
         ("-" * 2000 + "1", "cannot be read; write it shorter"),
     ],
 )
@@ -87,7 +87,7 @@ def test_condition_too_deep_to_be_read() -> None:
         ("world.state.scor", r"SimpleNamespace has no 'scor'; did you mean 'score'\?"),
         ("r1.pose.x_m > 'a'", "'>' compares two numbers, but 'a' is a text"),
         ("r1.pose.x_m > 1 or world.other.score", "'world/other'"),
-        ("r1.pose.x_m < 1 and world.state.goals", "has no 'goals'; there is names, score"),
+        ("r1.pose.x_m < 1 and world.state.goals", "has no 'goals'; there are names, score"),
         ("2 < r1.pose.x_m < world.other.score", "'world/other'"),
         ("not (r1.pose.x_m or max(1, world.other.score))", "'world/other'"),
     ],
