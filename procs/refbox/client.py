@@ -10,7 +10,7 @@ from fwk import Call as Sent
 from fwk import Calls, Clock, Component, Config, Logger, channel
 from lcmtypes.soccer import referee_command_t
 from procs.model.robot import PLAYERS, Players
-from procs.refbox.protocol import PORT, Command, ProtocolError, Stream, decode
+from procs.refbox.protocol import PORT, Command, Host, ProtocolError, Stream, decode
 
 _IGNORED = frozenset({"WELCOME", "IS_ALIVE"})
 _OTHER_NAMES = {"GAMEOVER": "END_GAME", "GAME_OVER": "END_GAME"}
@@ -21,7 +21,7 @@ _UNDER_WAY = frozenset({errno.EINPROGRESS, errno.EALREADY, errno.EWOULDBLOCK, er
 class ClientConfig(Config):
     """Address of the RefBox."""
 
-    host: str = "127.0.0.1"
+    host: Host = "127.0.0.1"
     """Its address."""
     port: int = Field(default=PORT, ge=1, le=65_535)
     """Its TCP port."""

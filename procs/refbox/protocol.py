@@ -7,10 +7,14 @@ text. Commands about a robot have its number as `robotID`.
 import json
 import re
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
+
+from pydantic import Field
 
 PORT = 28097
 """Port of the RefBox for base stations."""
+Host = Annotated[str, Field(min_length=1, pattern=r"^[^\s\x00-\x1f]*$")]
+"""A name or an address in the network."""
 LONGEST = 65_536
 """A peer that sends more bytes without a NUL does not speak the protocol."""
 

@@ -9,7 +9,7 @@ from fwk import Component, Config, Logger, Reads, channel
 from lcmtypes.soccer import game_state_t, match_history_t
 from procs.model.robot import PLAYERS, Players, number_of, team_of
 from procs.refbox.news import news
-from procs.refbox.protocol import PORT, Command, encode
+from procs.refbox.protocol import PORT, Command, Host, encode
 
 _BACKLOG = 16
 _HEARD = 65_536  # bytes taken from a base station in a tick, and dropped
@@ -18,7 +18,7 @@ _HEARD = 65_536  # bytes taken from a base station in a tick, and dropped
 class ServerConfig(Config):
     """Address at which base stations find the server."""
 
-    host: str = Field("127.0.0.1", frozen=True)
+    host: Host = Field("127.0.0.1", frozen=True)
     """Address on which it listens; 0.0.0.0 lets other machines in."""
     port: int = Field(default=PORT, ge=0, le=65_535, frozen=True)
     """TCP port; 0: one that is free, named in the log."""

@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from procs.model.field import Point
+from procs.model.robot import TEAM_NUMBERS, team_of
 from procs.simulation.physics.room import Room
 from procs.simulation.simulator import SimulatorConfig
 
@@ -59,6 +60,14 @@ def robot_mistakes(robots: Sequence[str], dummies: Sequence[str], places: Mappin
     for name in places:
         if name not in everyone:
             yield f"places: no robot '{name}'; there are {', '.join(sorted(everyone)) or 'none'}"
+
+
+def team_mistakes(robots: Sequence[str], settings: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
+    """Yields the robots that play for no team: neither their names nor the settings `players` say for which."""
+    named = {name for values in settings.values() for name in values.get("players") or ()}
+    for name in robots:
+        if team_of(name) not in TEAM_NUMBERS and name not in named:
+            yield f"robots: '{name}' plays for no team; names such as cyan1 and magenta2 tell it, or settings 'players'"
 
 
 def place_mistakes(places: Mapping[str, Sequence[float]], config: SimulatorConfig) -> Iterator[str]:

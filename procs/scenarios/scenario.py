@@ -20,7 +20,14 @@ from procs.model.robot import team_of
 from procs.referee.referee import Referee, RefereeConfig
 from procs.scenarios.crew import Action, Crew
 from procs.scenarios.dummy import Dummy
-from procs.scenarios.mistakes import field_mistakes, place_mistakes, robot_mistakes, settings_mistakes, texts_of
+from procs.scenarios.mistakes import (
+    field_mistakes,
+    place_mistakes,
+    robot_mistakes,
+    settings_mistakes,
+    team_mistakes,
+    texts_of,
+)
 from procs.scenarios.perfect_world import PerfectWorldModel
 from procs.scenarios.words import WORDS
 from procs.simulation.percepts import Percepts
@@ -104,7 +111,9 @@ def read(path: Path) -> Scenario:
 
 
 def _mistakes(scenario: Scenario) -> list[str]:
-    found = list(robot_mistakes(scenario.robots + scenario.seeing, scenario.dummies, scenario.places))
+    robots = scenario.robots + scenario.seeing
+    found = list(robot_mistakes(robots, scenario.dummies, scenario.places))
+    found += team_mistakes(robots, scenario.settings)
     found += [f"ball: {each}" for each in field_mistakes(scenario.ball, place_ball_t())]
     configs = {name: _config(kind) for name, kind in _components(scenario).items()}
     try:

@@ -2,15 +2,17 @@
 
 import contextlib
 import socket
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
+from pydantic import ValidationError
 
+from fwk import Config
 from fwk.testing import Bench, MemorySystem
 from lcmtypes.soccer import game_event_t, game_state_t, true_robot_t
-from procs.refbox.client import RefBoxClient
-from procs.refbox.server import RefBoxServer
+from procs.refbox.client import ClientConfig, RefBoxClient
+from procs.refbox.server import RefBoxServer, ServerConfig
 from procs.referee.referee import Referee
 from procs.simulation.simulator import Simulator
 from tests.procs.refbox.base_station import BaseStation, say
@@ -219,16 +221,23 @@ def test_refused_commands_of_a_tick_are_one_line(refbox: socket.socket) -> None:
     assert any(line.endswith(" more)") for line in lines)
 
 
-def test_server_listens_on_an_ipv6_address() -> None:
+def test_server_listens_on_an_ipv6_address(leave_out: Callable[[str], None]) -> None:
     try:
         socket.create_server(("::1", 0), family=socket.AF_INET6).close()
     except OSError:
-        pytest.skip("the machine has no such addresses")
+        leave_out("needs IPv6 addresses, which the machine lacks")
     bench = Bench(RefBoxServer, "world/refbox", host="::1", port=0)
     with contextlib.closing(socket.create_connection(("::1", bench.component.port), timeout=5.0)) as station:
         show(bench, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, True)
         assert b"WELCOME" in station.recv(4096)
     bench.finalize()
+
+
+@pytest.mark.parametrize("settings", [ClientConfig, ServerConfig])
+@pytest.mark.parametrize("host", ["", "127.0.0.1\0", "a b", "there\n"])
+def test_host_that_is_no_name_is_refused(settings: type[Config], host: str) -> None:
+    with pytest.raises(ValidationError, match="host"):
+        settings.model_validate({"host": host})
 
 
 def test_robots_have_the_numbers_of_the_players(refbox: socket.socket) -> None:

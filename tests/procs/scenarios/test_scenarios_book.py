@@ -52,6 +52,7 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
         ("- cyan2", ScenarioError, "mine.yaml: holds no keys"),
         ("robots: [cyan2]", ScenarioError, "nothing has to happen; give eventually, in_order"),
         ("robots: [cyan2]\ndummies: [cyan2]", ScenarioError, "'cyan2' is named 2 times"),
+        ("robots: [anna]\nat_end: [ball_speed < 1]", ScenarioError, "'anna' plays for no team; names such as cyan1"),
         ("robots: [my robot]", ScenarioError, "'my robot' is not a name"),
         ("robots: [cyan2]\nplaces: {cyan3: [0, 0, 0]}", ScenarioError, "places: no robot 'cyan3'; there are cyan2"),
         ("ball: {x: 1}", ScenarioError, "ball: there is no 'x'; there are x_m"),
