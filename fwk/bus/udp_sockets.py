@@ -58,14 +58,17 @@ def _asked_for(port: int) -> Iterator[UdpSocket]:
                 start += length + 3 & ~3  # answers begin at multiples of four bytes
 
 
-def _in_table(port: int) -> Iterator[UdpSocket]:
-    ending = f":{port:04X}"
-    with suppress(OSError):
-        for line in _TABLE.read_text().splitlines():
-            if ending in line:
-                columns = line.split()
-                if columns[1].endswith(ending):
-                    yield UdpSocket(columns[9], columns[7], not columns[4].endswith(":00000000"))
+def _in_table(port: int) -> Iterable[UdpSocket]:
+    """Reads the table twice: the kernel passes over a socket if another one is closed while the table is read."""
+    ending, found = f":{port:04X}", {}
+    for _ in range(2):
+        with suppress(OSError):
+            for line in _TABLE.read_text().splitlines():
+                if ending in line:
+                    columns = line.split()
+                    if columns[1].endswith(ending):
+                        found[columns[9]] = UdpSocket(columns[9], columns[7], not columns[4].endswith(":00000000"))
+    return found.values()
 
 
 def owners(inodes: Iterable[str]) -> Iterator[tuple[str, int]]:

@@ -3,6 +3,7 @@
 import os
 import socket
 from collections.abc import Iterator
+from types import SimpleNamespace
 
 import pytest
 
@@ -33,6 +34,14 @@ def only_socket(bound: socket.socket) -> UdpSocket:
 def test_a_socket_is_found_with_its_user_and_inode(bound: socket.socket) -> None:
     inode = os.fstat(bound.fileno()).st_ino
     assert only_socket(bound) == UdpSocket(str(inode), str(os.getuid()), waiting=False)
+
+
+def test_a_socket_that_one_reading_misses_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    row = "  9: 0100007F:1388 00000000:0000 07 00000000:00000000 00:00000000 00000000  1000 0 4711 2 0 0"
+    readings = iter(["  sl  local_address", row])
+    monkeypatch.setattr(udp_sockets, "_SOCK_DIAG", 99)
+    monkeypatch.setattr(udp_sockets, "_TABLE", SimpleNamespace(read_text=lambda: next(readings)))
+    assert sockets_on(5000) == [UdpSocket("4711", "1000", waiting=False)]
 
 
 @pytest.mark.usefixtures("way")
