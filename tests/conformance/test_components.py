@@ -10,6 +10,7 @@ import pytest
 
 from fwk import Component
 from fwk.testing import Bench
+from procs.refbox.server import RefBoxServer
 from procs.vision.calibration import MirrorConfig
 from tests.conformance.discovery import discovered, label, usage
 from tests.conformance.messages import Filling, extremes, usual
@@ -33,6 +34,8 @@ def bench_of(component: type[Component]) -> Bench:
     """Returns the component on a bench, with the settings of the first launch file that contains it."""
     used = usage(component)
     settings = dict(used[1].config) if used else {}
+    if component is RefBoxServer:
+        settings["port"] = 0  # a free one: several tests have a server at the same time
     return Bench(component, name="cyan1/component", namespaces=NAMESPACES, **settings)
 
 
