@@ -130,12 +130,8 @@ def kind(value: Any) -> str:
 
 def always_holds(said: str, value: Any) -> str:
     """Returns that a value counts as true whatever it is, and what would be right; empty for one that tells."""
-    fields = fields_of(value)
-    if fields:
-        return f"{said} is {kind(value)}, which always holds; compare one of its fields, such as {said}.{fields[0]}"
-    if inspect.isroutine(value):
-        return f"{said} is a function, which always holds; call it: {said}(...)"
-    return ""
+    right = _part_of(said, value, "compare")
+    return f"{said} is {kind(value)}, which always holds; {right}" if right else ""
 
 
 def fields_of(value: Any) -> list[str]:
@@ -163,9 +159,15 @@ def _number(given: int) -> str:
 
 def _way_out(said: str, value: Any) -> str:
     """Returns how a value becomes a number."""
+    right = _part_of(said, value, "take")
+    if not right and isinstance(value, list):
+        right = f"its length is len({said})"
+    return f"; {right}" if right else ""
+
+
+def _part_of(said: str, value: Any, verb: str) -> str:
+    """Returns how to get at what a message or a function has to say; empty for other values."""
     fields = fields_of(value)
     if fields:
-        return f"; take one of its fields, such as {said}.{fields[0]}"
-    if inspect.isroutine(value):
-        return f"; call it: {said}(...)"
-    return f"; its length is len({said})" if isinstance(value, list) else ""
+        return f"{verb} one of its fields, such as {said}.{fields[0]}"
+    return f"call it: {said}(...)" if inspect.isroutine(value) else ""

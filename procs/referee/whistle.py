@@ -247,7 +247,7 @@ class Whistle:
         self.start(sight)
 
     def _too_few(self, sight: Sight) -> bool:
-        """Returns whether a team has too few robots and may get more: for one after red cards, nobody waits."""
+        """Returns whether a team has too few robots and may get more; red cards leave none to wait for."""
         return any(self._waits_for(team, len(sight.team(team))) for team in (Team.CYAN, Team.MAGENTA))
 
     def _waits_for(self, team: Team, robots: int) -> bool:
@@ -315,7 +315,7 @@ class Whistle:
     def _watch_penalty(self, scene: Scene) -> None:
         """Watches one of the penalties that decide a match: a goal, the ball out, a further touch or time ends it.
 
-        It is one shot: after it no robot of the shooting team may touch the ball, whoever else has.
+        It is one shot: after it no robot of the shooting team may touch the ball, even if the goalkeeper has.
         """
         assert self.shootout
         foul = breach(scene, self.restart, self._stretch.excused)

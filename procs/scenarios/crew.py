@@ -6,7 +6,7 @@ from pydantic import AllowInfNan, BaseModel, ConfigDict, Field, NonNegativeFloat
 
 from fwk import Call, Calls, Clock, Component, Config, Logger, channel
 from lcmtypes.soccer import place_ball_t, place_robot_t, referee_command_t
-from procs.scenarios.mistakes import field_mistakes, fields_of
+from procs.scenarios.mistakes import field_mistakes
 
 _MESSAGES = {"place_ball": place_ball_t, "place_robot": place_robot_t, "referee": referee_command_t}
 
@@ -83,7 +83,7 @@ class Crew(Component):
             (self.referee, action.referee),
         ):
             if fields is not None:
-                usual = type(port.value)()  # what an action does not name is not that of the one before
-                for name in fields_of(usual):
-                    setattr(port.value, name, fields.get(name, getattr(usual, name)))
+                port.value = type(port.value)()  # what an action does not name is not that of the one before
+                for name, value in fields.items():
+                    setattr(port.value, name, value)
                 self._asked.append(port.call())

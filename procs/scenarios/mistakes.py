@@ -30,7 +30,8 @@ def texts_of(error: ValidationError, where: str = "", known: Sequence[str] = ())
 
 def field_mistakes(fields: Mapping[str, Any], message: Any) -> list[str]:
     """Returns what is wrong with fields that are given for a message: unknown names, and values of another type."""
-    known, found = fields_of(message), []
+    known = [name for name in message.__slots__ if name not in ("header", "command")]
+    found = []
     for name, value in fields.items():
         if name not in known:
             found.append(f"there is no '{name}'; there are {', '.join(known)}")
@@ -42,11 +43,6 @@ def field_mistakes(fields: Mapping[str, Any], message: Any) -> list[str]:
         elif wanted is float and not math.isfinite(value):
             found.append(f"{name} is {value!r}; it should be a finite number")
     return found
-
-
-def fields_of(message: Any) -> list[str]:
-    """Returns the fields of a command that its sender fills in."""
-    return [name for name in message.__slots__ if name not in ("header", "command")]
 
 
 def robot_mistakes(robots: Sequence[str], dummies: Sequence[str], places: Mapping[str, Any]) -> Iterator[str]:

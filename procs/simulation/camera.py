@@ -86,7 +86,12 @@ class Camera(Component):
     def preload(cls, config: CameraConfig) -> None:
         """Computes the painted field and the maps of the mirror, which are the same for all robots."""
         wear = _wear(chosen(PRESETS[config.realism], config))
-        Renderer(config.mirror.mirror(config.roll_deg, config.pitch_deg), config.field, _bodies(config), wear)
+        Renderer(
+            config.mirror.mirror(config.roll_deg, config.pitch_deg),
+            config.field,
+            Bodies.of(config.robot, config.ball),
+            wear,
+        )
 
     def init(self) -> None:
         cv2.setNumThreads(1)
@@ -111,7 +116,7 @@ class Camera(Component):
         errors = self._errors = chosen(PRESETS[config.realism], config)
         roll_deg, pitch_deg = (errors.tilt_sd_deg * self._tilts).tolist()
         mirror = config.mirror.mirror(config.roll_deg + roll_deg, config.pitch_deg + pitch_deg)
-        self._renderer = Renderer(mirror, config.field, _bodies(config), _wear(errors))
+        self._renderer = Renderer(mirror, config.field, Bodies.of(config.robot, config.ball), _wear(errors))
         self._noise = SensorNoise(
             config.mirror.size_px, errors.noise_levels, config.brightness, errors.flicker, self._noise_seed
         )
@@ -130,10 +135,6 @@ class Camera(Component):
         deviation_px = self._errors.shake_px + self._errors.shake_px_per_m_s * speed_m_s
         right_px, down_px = deviation_px * self.rng.standard_normal(2)
         return float(right_px), float(down_px)
-
-
-def _bodies(config: CameraConfig) -> Bodies:
-    return Bodies.of(config.robot, config.ball)
 
 
 def _wear(errors: CameraErrors) -> Wear:

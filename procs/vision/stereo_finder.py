@@ -20,7 +20,6 @@ _SUBPIXELS = 16  # OpenCV's disparities are in sixteenths of a pixel
 _LEAST_ROWS = 4  # of a column that a body covers
 _COLUMN_GAP = 8  # columns without a body that may lie within one
 _GAP = 0.3  # of the width of a robot: a body may have so wide a gap, too
-_SAME_PART = 0.25  # of the radius of a robot times four: deeper steps separate bodies
 _LEAST_WIDTH = 0.4  # share of the columns of a robot that must show one
 _WHOLE = 0.85  # share of its width from which a robot counts as seen from edge to edge
 _SLACK_PX = 5  # by which widths differ as a rule
@@ -91,8 +90,8 @@ class StereoFinder:
         """Divides columns with something upright into bodies, from left to right."""
         width_px = self.rig.focal_px * 2 * self.radius_m / near_m
         gaps = np.diff(columns) > np.maximum(_COLUMN_GAP, _GAP * width_px[1:])
-        steps_m = np.diff(near_m)
-        edges = np.flatnonzero(gaps | (np.abs(steps_m) > 4 * _SAME_PART * self.radius_m)) + 1
+        steps_m = np.diff(near_m)  # one deeper than the radius of a robot separates bodies
+        edges = np.flatnonzero(gaps | (np.abs(steps_m) > self.radius_m)) + 1
         first_px, last_px = self.disparities + self.block_px, self.rig.width_px - 1 - self.block_px
         for begin, end in itertools.pairwise([0, *edges.tolist(), len(columns)]):
             # An edge is hidden at the end of what both frames show, or behind something nearer.

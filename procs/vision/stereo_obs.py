@@ -29,7 +29,7 @@ class StereoObsConfig(Config):
     deviation_px: float = Setting(default=0.35, gt=0.0, le=50.0)
     """Standard deviation of a disparity."""
     latency_s: float = Setting(default=0.0, ge=0.0, le=1.0)
-    """From the exposure of a frame until its camera publishes it, for cameras that do not state the exposure."""
+    """Time from the exposure of a frame to its publication, for cameras that do not state the exposure."""
 
 
 class StereoObs(Component):

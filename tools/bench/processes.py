@@ -5,7 +5,6 @@ The launch file runs as users start it, as fast as it can, with gateway and reco
 
 import signal
 from collections import defaultdict
-from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated, NamedTuple
 
@@ -63,11 +62,10 @@ def _spent_ms(launcher: int) -> dict[int, tuple[str, float]]:
     for pid in [launcher, *accounting.descendants(launcher)]:
         try:
             title = psutil.Process(pid).cmdline()[0]
-            run_ns = int(Path(f"/proc/{pid}/schedstat").read_text().split()[0])
-        except (psutil.NoSuchProcess, OSError, IndexError):  # it has ended
+        except (psutil.NoSuchProcess, IndexError):  # it has ended
             continue
         name = title.split()[-1].rpartition("/")[2] if title.startswith("fwk: ") else "launcher"
-        found[pid] = name, run_ns / 1e6
+        found[pid] = name, accounting.usage([pid]).cpu_us / 1e3
     return found
 
 

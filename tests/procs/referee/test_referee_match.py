@@ -42,7 +42,9 @@ def test_penalty_that_is_touched_but_not_shot_becomes_play() -> None:
     script.wait(9.8)
     assert script.state == (State.PENALTY, CYAN, False)
     script.wait(0.4)
-    assert script.state == (State.PLAY, Team.NONE, False), "whoever may play, the taker may have crashed with the ball"
+    assert script.state == (State.PLAY, Team.NONE, False), (
+        "any robot may play: the taker may have crashed with the ball"
+    )
 
 
 def test_penalty_is_repeated_when_the_keeper_leaves_its_area() -> None:

@@ -210,7 +210,7 @@ def test_ball_straight_above_the_mirror_is_not_seen() -> None:
 
 
 def test_nothing_is_seen_beyond_what_the_mirror_shows() -> None:
-    """It shows 4.3 m of ground; robots and ball are drawn with errors of pixels from there on only."""
+    """The mirror shows 4.3 m of ground; without errors nothing is found further away."""
     eyes = bench(realism="none", mirror={"view_angle_deg": 80.0})
     near, far = (OWN[0], OWN[1] - 3.0), (OWN[0], OWN[1] - 5.0)
     assert look(eyes, truth(near, (OWN[0] + 3.0, OWN[1]))).visible

@@ -82,6 +82,6 @@ def test_reach_is_the_ground_at_the_pictures_edge() -> None:
 
 @pytest.mark.parametrize("height_m", [0.87, 1.2, 3.0])
 def test_sphere_straight_above_the_viewpoint_is_not_shown(height_m: float) -> None:
-    """It covers all directions but those in a circle, whose radius is negative."""
+    """Such a sphere fills everything outside a circle of the picture, so its radius is negative."""
     for away_m in (0.01, 0.05, 0.1):
         assert not Mirror().shows_all(*Mirror().sphere((away_m, 0.0, height_m), 0.11))
