@@ -12,7 +12,7 @@ from lcmtypes.soccer import referee_command_t
 from procs.model.robot import PLAYERS, Players
 from procs.refbox.protocol import PORT, Command, Host, ProtocolError, Stream, decode
 
-_IGNORED = frozenset({"WELCOME", "IS_ALIVE"})
+_IGNORED = frozenset({"WELCOME", "IS_ALIVE", "REPAIR_END", "TESTMODE_ON", "TESTMODE_OFF"})
 _OTHER_NAMES = {"GAMEOVER": "END_GAME", "GAME_OVER": "END_GAME"}
 _TIMEOUT_S = 1.0
 _UNDER_WAY = frozenset({errno.EINPROGRESS, errno.EALREADY, errno.EWOULDBLOCK, errno.EINTR})

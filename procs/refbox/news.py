@@ -20,7 +20,7 @@ _SET_PIECES = {
 _GOALS_MAX = 99
 """A RefBox counts no further."""
 _HALVES = {1: "FIRST_HALF", 2: "SECOND_HALF", 3: "FIRST_HALF_OVERTIME", 4: "SECOND_HALF_OVERTIME"}
-_BREAKS = {game_state_t.HALF_TIME: "HALF_TIME", game_state_t.FROZEN: "END_GAME"}
+_BREAKS = (game_state_t.HALF_TIME, game_state_t.FROZEN)
 _CARDS = {game_event_t.YELLOW: "YELLOW_CARD", game_event_t.DOUBLE_YELLOW: "DOUBLE_YELLOW", game_event_t.RED: "RED_CARD"}
 
 _AWAY = (game_event_t.DOUBLE_YELLOW, game_event_t.RED)
@@ -106,7 +106,14 @@ def _begins_again(before: game_state_t, now: game_state_t) -> bool:
 
 
 def _break(now: game_state_t) -> list[Command]:
-    return [Command("STOP"), Command(_BREAKS[now.state])] if now.state in _BREAKS else []
+    """Returns what begins a break; overtime or penalties may follow END_GAME, but nothing follows GAMEOVER."""
+    if now.state not in _BREAKS:
+        return []
+    if now.state == game_state_t.HALF_TIME and now.half in (1, 3):
+        return [Command("STOP"), Command("HALF_TIME")]
+    drawn = now.half in (2, 4) and now.score_cyan == now.score_magenta
+    over = now.state == game_state_t.FROZEN and not drawn
+    return [Command("STOP"), Command("END_GAME")] + [Command("GAMEOVER")] * over
 
 
 def _half(now: game_state_t) -> list[Command]:

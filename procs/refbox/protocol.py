@@ -1,7 +1,7 @@
 """Protocol of the RefBox of the middle size league: JSON objects over TCP, each followed by a NUL byte.
 
 `{"command": "KICKOFF", "targetTeam": "224.16.32.1"}`; a team is named by its multicast address, both teams by an empty
-text. Commands about a robot have its number as `robotID`.
+text. `SUBSTITUTION` and `IS_ALIVE` have the number of a robot as `robotID`; cards and `REPAIR` need none.
 """
 
 import json
@@ -58,7 +58,7 @@ def decode(data: bytes, addresses: Mapping[str, str]) -> Command:
         raise ProtocolError(f"{data[:_QUOTED]!r} is not JSON") from error
     if not isinstance(message, dict) or not isinstance(message.get("command"), str):
         raise ProtocolError(f"{data[:_QUOTED]!r} has no command")
-    name, address, robot = message["command"], message.get("targetTeam", ""), message.get("robotID", 0)
+    name, address, robot = message["command"].strip(), message.get("targetTeam", ""), message.get("robotID", 0)
     if not _NAME.fullmatch(name):
         raise ProtocolError(f"{_quoted(name)} is not the name of a command")
     teams = {each: team for team, each in addresses.items()} | {"": ""}

@@ -30,6 +30,11 @@ class Cards:
         return frozenset(self._out_s)
 
     @property
+    def warned(self) -> frozenset[str]:
+        """Robots with a yellow card."""
+        return frozenset(self._yellow)
+
+    @property
     def dismissed(self) -> frozenset[str]:
         """Robots that do not come back in this match."""
         return frozenset(robot for robot, time_s in self._out_s.items() if math.isinf(time_s))

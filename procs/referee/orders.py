@@ -8,7 +8,7 @@ from procs.referee import halves, restarts
 from procs.referee.cards import Card
 from procs.referee.ends import Team, team_number
 from procs.referee.names import Names
-from procs.referee.refusals import SET_PIECES, why_not
+from procs.referee.refusals import SET_PIECES, begun_by, why_not
 from procs.referee.restarts import Restart, State
 from procs.referee.sight import Sight
 from procs.referee.whistle import Whistle
@@ -34,20 +34,24 @@ def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: 
     if refused:
         return refused
     if name in SET_PIECES:
-        return _set_piece(whistle, sight, SET_PIECES[name], _TEAMS[team])
+        return _set_piece(whistle, sight, name, _TEAMS[team])
     if name in ("goal", "subgoal"):
         return _goal(whistle, _TEAMS[team], name == "goal")
     if name in _CARDS or name in ("repair", "substitution"):
         return _robot(whistle, sight, name, _TEAMS[team], robot, names)
     if name in _HALVES:
-        whistle.begin_half(_HALVES[name])
+        whistle.begin_half(_HALVES[name], first=whistle.kicks_off(_HALVES[name]))
         return ""
     return _simple(whistle, sight, name)
 
 
-def _set_piece(whistle: Whistle, sight: Sight, state: State, team: Team) -> str:
+def _set_piece(whistle: Whistle, sight: Sight, name: str, team: Team) -> str:
+    state, half = SET_PIECES[name], begun_by(whistle, name)
     if not team:
         return f"a {state.name.lower().replace('_', ' ')} needs a team: cyan or magenta"
+    if half:
+        whistle.begin_half(half, "by hand", team)
+        return ""
     place, field, ends = whistle.place(sight.ball), whistle.rules.field, whistle.ends
     made: dict[State, Callable[[], Restart]] = {
         State.KICK_OFF: lambda: restarts.kick_off(team),
@@ -60,9 +64,12 @@ def _set_piece(whistle: Whistle, sight: Sight, state: State, team: Team) -> str:
         State.PENALTY: lambda: restarts.penalty(team, field, ends),
     }
     if whistle.shootout and team is not whistle.shootout.shooter:
-        whistle.end_penalty(scored=False)
-    else:
-        whistle.interrupt(made[state](), "by hand")
+        if whistle.held or not whistle.stopped:  # the penalty at hand was started
+            whistle.end_penalty(scored=False)
+            if whistle.at_rest or whistle.shootout.shooter is team:
+                return ""
+        whistle.shootout.shooter = team
+    whistle.interrupt(made[state](), "by hand")
     return ""
 
 
@@ -86,9 +93,14 @@ def _goal(whistle: Whistle, team: Team, more: bool) -> str:
 
 
 def _robot(whistle: Whistle, sight: Sight, name: str, team: Team, namespace: str, names: Names) -> str:
-    known, robot = names.all_outside(sight.robots), names.inside(namespace)
+    known = names.all_outside(sight.robots)
+    if not namespace and team:
+        namespace = names.outside(_chosen(whistle, sight, name, team))
+        if not namespace:
+            return f"no robot of {team.name.lower()} is on the field"
+    robot = names.inside(namespace)
     if not namespace:
-        return f"a {name.replace('_', ' ')} needs a robot; there are {', '.join(known) or 'none'}"
+        return f"a {name.replace('_', ' ')} needs a team or a robot; there are {', '.join(known) or 'none'}"
     if namespace not in known:
         return f"no robot '{namespace}'; there are {', '.join(known) or 'none'}"
     if team and team_number(robot) is not team:
@@ -98,6 +110,20 @@ def _robot(whistle: Whistle, sight: Sight, name: str, team: Team, namespace: str
     else:
         whistle.take_out(robot, name)
     return ""
+
+
+def _chosen(whistle: Whistle, sight: Sight, name: str, team: Team) -> str:
+    """Returns the robot of a team that a command means that names none, as those of a RefBox; empty without any.
+
+    It is the highest number on the field. The second yellow card goes to a robot that has one.
+    """
+    robots = sight.without(whistle.cards.sent_off).team(team)
+    warned = [robot for robot in robots if robot in whistle.cards.warned]
+    if name == "double_yellow" and warned:
+        robots = warned
+    elif name == "yellow_card" and len(warned) < len(robots):
+        robots = [robot for robot in robots if robot not in warned]
+    return robots[-1] if robots else ""
 
 
 def _simple(whistle: Whistle, sight: Sight, name: str) -> str:

@@ -24,10 +24,25 @@ _NEXT = {
 }
 
 
+def begun_by(whistle: Whistle, name: str) -> int | None:
+    """Returns the half whose first set piece has this name, in the break before it; None for other commands.
+
+    A drawn match that has ended goes on in the same way.
+    """
+    drawn = whistle.score[Team.CYAN] == whistle.score[Team.MAGENTA]
+    goes_on = whistle.state is State.HALF_TIME or (
+        whistle.over and drawn and whistle.half in (halves.SECOND, halves.FOURTH)
+    )
+    following = whistle.half + 1
+    return following if goes_on and name == ("penalty" if following == halves.PENALTIES else "kickoff") else None
+
+
 def why_not(whistle: Whistle, name: str, team: Team) -> str:
     """Returns why a command makes no sense now, and what would; an empty text if it does."""
     if name == "start" and (not whistle.stopped or whistle.at_rest):
         return "nothing to start: the game runs, or has a break"
+    if begun_by(whistle, name):
+        return ""
     if name in SET_PIECES or name in ("drop_ball", "half_time"):
         if whistle.over:
             return f"no {_words(name)} after the end of the match; reset begins another match"
@@ -48,8 +63,6 @@ def _why_not_between_penalties(whistle: Whistle, name: str, team: Team) -> str:
         return f"no {_words(name)} while penalties decide the match; penalty team={whose} repeats the one at hand"
     if name == "goal" and team is shooter.other:
         return f"{team.name.lower()} cannot score: the penalty is one of {whose}"
-    if name == "penalty" and team is shooter.other and whistle.stopped and not whistle.held:
-        return f"{team.name.lower()} cannot shoot yet: the penalty of {whose} has not been started"
     return ""
 
 

@@ -4,17 +4,16 @@ from procs.referee.ends import Team
 
 
 class Shootout:
-    """Score of the penalties; cyan shoots first."""
+    """Score of the penalties."""
 
-    def __init__(self, pairs: int) -> None:
+    def __init__(self, pairs: int, first: Team = Team.CYAN) -> None:
+        """`first` shoots first."""
         self.pairs = pairs
+        self.shooter = first
+        """Team of the next penalty: the one with fewer shots, unless a person lets another shoot."""
+        self._first = first
         self.shots = {Team.CYAN: 0, Team.MAGENTA: 0}
         self.goals = {Team.CYAN: 0, Team.MAGENTA: 0}
-
-    @property
-    def shooter(self) -> Team:
-        """Team of the next penalty."""
-        return Team.CYAN if self.shots[Team.CYAN] == self.shots[Team.MAGENTA] else Team.MAGENTA
 
     @property
     def decided(self) -> bool:
@@ -25,9 +24,10 @@ class Shootout:
 
     def shot(self, scored: bool) -> None:
         """Counts a penalty of the team whose turn it is."""
-        team = self.shooter
-        self.shots[team] += 1
-        self.goals[team] += scored
+        self.shots[self.shooter] += 1
+        self.goals[self.shooter] += scored
+        ahead = self.shots[self._first] > self.shots[self._first.other]
+        self.shooter = self._first.other if ahead else self._first
 
     def take_back(self, team: Team) -> None:
         """Counts one of a team's goals as a miss, if it has any."""

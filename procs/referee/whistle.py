@@ -63,6 +63,7 @@ class Whistle:
         self.cards = Cards()
         self.shootout: Shootout | None = None
         self.calls: list[Call] = []
+        self._begun = False  # whether a set piece of the half was started
         self._left_at: Point | None = None  # by the ball: where it was when the game was last stopped
         self._changing_ends = False
         self._starting = False  # the game starts as soon as the ball is on its spot
@@ -118,13 +119,20 @@ class Whistle:
         self.cards = Cards()
         self.begin_half(halves.FIRST, RESET)
 
-    def begin_half(self, half: int, reason: str = "") -> None:
-        """Begins a half with its kick-off, or the penalties with the first of them."""
+    def begin_half(self, half: int, reason: str = "", first: Team = Team.NONE) -> None:
+        """Begins a half with its kick-off, or the penalties with the first one; `first` is the team that has it."""
         ends = halves.ends_of(half, self.rules)
-        self._changing_ends, self.ends = ends != self.ends, ends
+        self._changing_ends, self.ends = self._changing_ends or ends != self.ends, ends
         self.half, self.time_in_half_s, self._left_at = half, 0.0, None
-        self.shootout = Shootout(self.rules.penalties) if half == halves.PENALTIES else None
-        self.interrupt(self._next_penalty() if self.shootout else restarts.kick_off(halves.kicks_off(half)), reason)
+        self.shootout = Shootout(self.rules.penalties, first or Team.CYAN) if half == halves.PENALTIES else None
+        kick_off = restarts.kick_off(first or halves.kicks_off(half))
+        self.interrupt(self._next_penalty() if self.shootout else kick_off, reason)
+        self._begun = False
+
+    def kicks_off(self, half: int) -> Team:
+        """Returns the team that was given the kick-off of a half that has not begun; NONE without one."""
+        prepared = half == self.half and self.state is State.KICK_OFF and not self._begun
+        return self.team if prepared else Team.NONE
 
     def stop(self, ball: Point) -> None:
         """Stops the game until it is started by hand; from play it goes on with a dropped ball where the ball is."""
@@ -170,6 +178,7 @@ class Whistle:
             return
         self._enter(self.state, self.team, stopped=False)
         self.held = self._changing_ends = False
+        self._begun = True
         excused = self._misplaced(sight) if sight else []
         ball = sight.ball if sight else self.spot
         self._stretch = Stretch(self.state, ball, frozenset(excused))

@@ -82,7 +82,15 @@ def test_stream_is_cut_at_nul_bytes_wherever_they_arrive() -> None:
         (PLAY, state(game_state_t.KICK_OFF, 2, score_cyan=1), ["GOAL cyan", "STOP", "KICKOFF magenta"]),
         (state(1, score_cyan=1), state(1), ["SUBGOAL cyan"]),
         (PLAY, state(game_state_t.HALF_TIME), ["STOP", "HALF_TIME"]),
-        (PLAY, state(game_state_t.FROZEN), ["STOP", "END_GAME"]),
+        (PLAY, state(game_state_t.FROZEN), ["STOP", "END_GAME", "GAMEOVER"]),
+        (state(1, half=2), state(game_state_t.FROZEN, half=2), ["STOP", "END_GAME"]),  # drawn: overtime may follow
+        (state(1, half=2), state(game_state_t.HALF_TIME, half=2), ["STOP", "END_GAME"]),
+        (state(1, half=3), state(game_state_t.HALF_TIME, half=3), ["STOP", "HALF_TIME"]),
+        (
+            state(1, half=2, score_cyan=1),
+            state(game_state_t.FROZEN, half=2, score_cyan=1),
+            ["STOP", "END_GAME", "GAMEOVER"],
+        ),
         (state(game_state_t.HALF_TIME), state(game_state_t.KICK_OFF, 2, half=2), ["SECOND_HALF", "KICKOFF magenta"]),
         (
             state(game_state_t.FROZEN, half=2),

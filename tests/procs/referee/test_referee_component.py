@@ -124,7 +124,8 @@ def test_stop_by_hand_holds_the_game_until_start() -> None:
         ({"name": "freekick", "team": "red"}, "no team 'red'; there are cyan, magenta"),
         ({"name": "subgoal", "team": "cyan"}, "cyan has no goal to take back"),
         ({"name": "yellow_card", "robot": "cyan9"}, "no robot 'cyan9'; there are none"),
-        ({"name": "red_card", "team": "cyan"}, "a red card needs a robot; there are none"),
+        ({"name": "red_card"}, "a red card needs a team or a robot; there are none"),
+        ({"name": "red_card", "team": "cyan"}, "no robot of cyan is on the field"),
         ({"name": "start"}, "nothing to start: the game runs, or has a break"),
     ],
 )
@@ -284,6 +285,32 @@ def test_what_plays_in_neither_team_commits_no_foul() -> None:
         bench.port("match_events").put(ball_x_m=3.0, events=[hit])
         bench.iterate()
         assert (state(bench).state == game_state_t.FREE_KICK) == whistled
+
+
+def test_command_for_a_team_means_its_highest_number_on_the_field() -> None:
+    bench = with_names()
+    for name, team, expected in (
+        ("yellow_card", "magenta", []),  # dora
+        ("yellow_card", "magenta", []),  # cyan2, as dora has one
+        ("repair", "cyan", ["bert"]),
+        ("double_yellow", "magenta", ["bert", "dora"]),
+        ("red_card", "magenta", ["bert", "cyan2", "dora"]),
+        ("red_card", "cyan", ["anna", "bert", "cyan2", "dora"]),
+    ):
+        bench.port("referee_command").put(name=name, team=team)
+        bench.iterate()
+        assert state(bench).sent_off == expected
+    bench.port("referee_command").put(name="repair", team="cyan")
+    bench.iterate()
+    assert bench.port("referee_command").sent[-1].answer.reason == "no robot of cyan is on the field"
+    shown = [(event.robot, event.card) for event in history(bench) if event.card]
+    assert shown == [
+        ("dora", game_event_t.YELLOW),
+        ("cyan2", game_event_t.YELLOW),
+        ("dora", game_event_t.DOUBLE_YELLOW),
+        ("cyan2", game_event_t.RED),
+        ("anna", game_event_t.RED),
+    ]
 
 
 def test_second_yellow_card_by_hand_is_double() -> None:

@@ -3,6 +3,7 @@
 import pytest
 
 from procs.model.field import Point
+from procs.referee.ends import Team
 from procs.referee.restarts import State
 from procs.simulation.physics.events import Kind
 from tests.procs.referee.script import CYAN, MAGENTA, Script
@@ -45,8 +46,8 @@ def test_no_set_piece_after_the_end(command: str) -> None:
     assert script.state == (State.FROZEN, 0, True)
 
 
-@pytest.mark.parametrize("command", [*SET_PIECES, "drop_ball", "half_time"])
-def test_no_set_piece_in_a_break(command: str) -> None:
+@pytest.mark.parametrize("command", [*SET_PIECES[1:], "drop_ball", "half_time"])
+def test_only_the_kick_off_in_a_break(command: str) -> None:
     script = in_break()
     reason = ask(script, command, "cyan")
     assert reason.startswith("no ")
@@ -122,7 +123,8 @@ def test_only_penalties_while_they_decide_the_match(command: str) -> None:
 
 def test_penalty_of_the_other_team_makes_it_a_miss() -> None:
     script = penalties()
-    assert ask(script, "penalty", "magenta") == "magenta cannot shoot yet: the penalty of cyan has not been started"
+    assert ask(script, "penalty", "magenta") == "", "magenta shoots first"
+    assert (script.state, counted(script)) == ((State.PENALTY, MAGENTA, True), ([0, 0], [0, 0]))
     for stopped in (True, False):
         script = penalties()
         script.robots["cyan2"] = Point(6.8, 0.0)
@@ -139,6 +141,68 @@ def test_penalty_of_the_same_team_repeats_it() -> None:
     ask(script, "start")
     assert ask(script, "penalty", "cyan") == ""
     assert (script.state, counted(script)) == ((State.PENALTY, CYAN, True), ([0, 0], [0, 0]))
+
+
+def test_penalty_that_is_given_up_may_decide_the_match() -> None:
+    script = penalties()
+    assert ask(script, "goal", "cyan") == ""
+    for following in ("cyan", "magenta", "cyan"):
+        assert not script.whistle.over
+        assert ask(script, "start") == ask(script, "penalty", following) == ""
+    assert (script.whistle.over, counted(script)) == (True, ([2, 2], [1, 0]))
+
+
+def test_penalties_go_on_with_the_team_that_has_shot_less() -> None:
+    script = penalties()
+    assert ask(script, "penalty", "magenta") == ""
+    for team, following in (("magenta", CYAN), ("cyan", CYAN), ("cyan", MAGENTA)):
+        assert ask(script, "goal", team) == ""
+        assert script.state == (State.PENALTY, following, True)
+        if counted(script)[0] == [1, 1]:
+            break
+    assert counted(script) == ([1, 1], [1, 1])
+
+
+@pytest.mark.parametrize("team", [CYAN, MAGENTA])
+def test_kick_off_in_a_break_prepares_the_next_half(team: Team) -> None:
+    script = in_break()
+    assert ask(script, "kickoff", team.name.lower()) == ""
+    assert (script.state, script.whistle.half) == ((State.KICK_OFF, team, True), 2)
+    assert script.whistle.ends.cyan_side == 1.0, "the robots change ends before the half begins"
+    script.tick()
+    assert ask(script, "second_half") == ""
+    assert (script.state, script.whistle.time_in_half_s <= 0.05) == ((State.KICK_OFF, team, True), True)
+    assert ask(script, "start") == ""
+    assert script.state == (State.KICK_OFF, team, False)
+    ask(script, "second_half")
+    assert script.state == (State.KICK_OFF, MAGENTA, True), "once begun, it begins anew as usual"
+
+
+def test_match_begins_with_the_kick_off_that_was_commanded() -> None:
+    script = Script()
+    for command, team in (("stop", ""), ("kickoff", "magenta"), ("first_half", "")):
+        assert ask(script, command, team) == ""
+    assert script.state == (State.KICK_OFF, MAGENTA, True)
+    assert ask(script, "reset") == ""
+    assert script.state == (State.KICK_OFF, CYAN, True)
+
+
+def test_drawn_match_goes_on_after_its_end() -> None:
+    script = Script(automatic=False)
+    ask(script, "second_half")
+    ask(script, "goal", "cyan")
+    ask(script, "end_game")
+    assert ask(script, "kickoff", "cyan").startswith("no kick off after the end"), "it is decided"
+    ask(script, "goal", "magenta")
+    assert ask(script, "penalty", "cyan").startswith("no penalty after the end"), "the overtime comes first"
+    assert ask(script, "kickoff", "magenta") == ""
+    assert (script.state, script.whistle.half) == ((State.KICK_OFF, MAGENTA, True), 3)
+    ask(script, "second_half_overtime")
+    ask(script, "end_game")
+    assert ask(script, "penalty", "magenta") == ""
+    assert (script.state, script.whistle.half) == ((State.PENALTY, MAGENTA, True), 5)
+    ask(script, "end_game")
+    assert ask(script, "penalty", "magenta").startswith("no penalty after the end")
 
 
 def test_decided_penalties_led_by_hand_wait_for_the_end() -> None:
