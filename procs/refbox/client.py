@@ -26,7 +26,7 @@ class ClientConfig(Config):
     port: int = Field(default=PORT, ge=1, le=65_535)
     """Its TCP port."""
     retry_s: PositiveFloat = 1.0
-    """A RefBox that cannot be reached is tried again after this time."""
+    """A RefBox that cannot be reached is tried again after this time; only a new reason is logged again."""
     connect_s: PositiveFloat = 1.0
     """A RefBox that does not answer for so long is not there. The game goes on meanwhile."""
     addresses: dict[str, str] = {"cyan": "224.16.32.1", "magenta": "224.16.32.2"}
@@ -52,6 +52,7 @@ class RefBoxClient(Component):
         self._dialled_us = 0
         self._stream = Stream()
         self._again_us = 0
+        self._reason = ""  # why the RefBox cannot be reached
         self._sent: list[Sent] = []
 
     def loop(self) -> None:
@@ -93,9 +94,12 @@ class RefBoxClient(Component):
         if code not in (0, errno.EISCONN):
             dialled.close()
             self._again_us = self.clock.now_us + round(self.config.retry_s * 1e6)
-            self.log.warning(f"no RefBox at {place[0]}:{place[1]}: {reason}")
+            if reason != self._reason:
+                again = f"it is tried again every {self.config.retry_s:g} s"
+                self.log.warning(f"no RefBox at {place[0]}:{place[1]}: {reason}; {again}")
+            self._reason = reason
             return
-        self._connection, self._stream = dialled, Stream()
+        self._connection, self._stream, self._reason = dialled, Stream(), ""
         self.log.info(f"connected with the RefBox at {place[0]}:{place[1]}")
 
     def _messages(self) -> list[bytes]:

@@ -99,7 +99,7 @@ class Whistle:
         if self.over:
             return
         if self.state is State.HALF_TIME:
-            if self.rules.automatic and self.time_in_state_s >= self.rules.half_time_s:
+            if self.rules.automatic and not self.held and self.time_in_state_s >= self.rules.half_time_s:
                 self._end_break()
             return
         self.time_in_half_s += duration_s
@@ -147,6 +147,7 @@ class Whistle:
         """Ends the half, and the match if no other follows."""
         if halves.after(self.half, self.score, self.rules):
             self._enter(State.HALF_TIME, Team.NONE, stopped=True)
+            self.held = False
             self.calls.append(Call(self.state, Team.NONE))
         else:
             self.end_match()

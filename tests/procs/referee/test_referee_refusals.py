@@ -178,6 +178,25 @@ def test_kick_off_in_a_break_prepares_the_next_half(team: Team) -> None:
     assert script.state == (State.KICK_OFF, MAGENTA, True), "once begun, it begins anew as usual"
 
 
+@pytest.mark.parametrize("command", ["second_half", "kickoff"])
+def test_stop_holds_a_break_until_the_next_half(command: str) -> None:
+    script = Script(half_time_s=1.0).playing()
+    for name in ("stop", "half_time", "stop"):
+        ask(script, name)
+    script.wait(3.0)
+    assert script.state == (State.HALF_TIME, 0, True)
+    assert ask(script, command, "cyan") == ""
+    assert script.started().whistle.half == 2
+
+
+def test_stop_before_a_break_does_not_hold_it() -> None:
+    script = Script(half_time_s=1.0).playing()
+    ask(script, "stop")
+    ask(script, "half_time")
+    script.wait(1.2)
+    assert (script.state[0], script.whistle.half) == (State.KICK_OFF, 2)
+
+
 def test_match_begins_with_the_kick_off_that_was_commanded() -> None:
     script = Script()
     for command, team in (("stop", ""), ("kickoff", "magenta"), ("first_half", "")):
