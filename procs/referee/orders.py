@@ -48,7 +48,7 @@ def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: 
 def _set_piece(whistle: Whistle, sight: Sight, state: State, team: Team) -> str:
     if not team:
         return f"a {state.name.lower().replace('_', ' ')} needs a team: cyan or magenta"
-    place, field, ends = whistle.place(sight.ball), whistle.rules.field, whistle.ends
+    place, field, ends = whistle.restart_place(sight.ball), whistle.rules.field, whistle.ends
     made: dict[State, Callable[[], Restart]] = {
         State.KICK_OFF: lambda: restarts.kick_off(team),
         State.FREE_KICK: lambda: restarts.after_foul(place, team.other, field),
@@ -107,7 +107,7 @@ def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
         case "stop":
             whistle.stop(sight.ball)
         case "drop_ball":
-            whistle.interrupt(restarts.dropped_ball(whistle.place(sight.ball), whistle.rules.field), "by hand")
+            whistle.interrupt(restarts.dropped_ball(whistle.restart_place(sight.ball), whistle.rules.field), "by hand")
         case "park":
             whistle.park(sight.robots)
         case "half_time":

@@ -12,6 +12,7 @@ from lcmtypes.soccer import (
     referee_command_t,
 )
 from procs.model.field import Point
+from procs.referee.calls import Call
 from procs.referee.ends import Team
 from procs.referee.names import Names
 from procs.referee.orders import carry_out
@@ -19,7 +20,7 @@ from procs.referee.reasons import OFF_FIELD
 from procs.referee.restarts import State
 from procs.referee.rules import Rules
 from procs.referee.sight import Sight
-from procs.referee.whistle import Call, Whistle
+from procs.referee.whistle import Whistle
 from procs.simulation.physics.events import Event, Kind
 
 _KINDS = frozenset(Kind)
