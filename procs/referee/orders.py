@@ -1,4 +1,4 @@
-"""Manual commands: the referee's decisions, made by a person or by a RefBox, with the names of the RefBox."""
+"""Commands by hand: the referee's decisions, made by a person or by a RefBox, with the names of the RefBox."""
 
 from collections.abc import Callable
 
@@ -8,6 +8,7 @@ from procs.referee import halves, restarts
 from procs.referee.cards import Card
 from procs.referee.ends import Team, team_number
 from procs.referee.names import Names
+from procs.referee.reasons import REPAIRS
 from procs.referee.refusals import SET_PIECES, why_not
 from procs.referee.restarts import Restart, State
 from procs.referee.sight import Sight
@@ -15,15 +16,19 @@ from procs.referee.whistle import Whistle
 
 _USUAL = Names(PLAYERS)
 _TEAMS = {"": Team.NONE, "cyan": Team.CYAN, "magenta": Team.MAGENTA}
-_CARDS = {"yellow_card": Card.YELLOW, "double_yellow": Card.DOUBLE_YELLOW, "red_card": Card.RED}
-_PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game", "reset")
-_HALVES = {
+CARDS = {"yellow_card": Card.YELLOW, "double_yellow": Card.DOUBLE_YELLOW, "red_card": Card.RED}
+GOALS = ("goal", "subgoal")
+"""`subgoal` takes a goal back."""
+PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game", "reset")
+"""Commands without a team or a robot."""
+HALVES = {
     "first_half": halves.FIRST,
     "second_half": halves.SECOND,
     "first_half_overtime": halves.THIRD,
     "second_half_overtime": halves.FOURTH,
     "penalties": halves.PENALTIES,
 }
+"""Commands that begin a part of the match."""
 
 
 def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: str = "", names: Names = _USUAL) -> str:
@@ -35,12 +40,12 @@ def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: 
         return refused
     if name in SET_PIECES:
         return _set_piece(whistle, sight, SET_PIECES[name], _TEAMS[team])
-    if name in ("goal", "subgoal"):
+    if name in GOALS:
         return _goal(whistle, _TEAMS[team], name == "goal")
-    if name in _CARDS or name in ("repair", "substitution"):
+    if name in CARDS or name in REPAIRS:
         return _robot(whistle, sight, name, _TEAMS[team], robot, names)
-    if name in _HALVES:
-        whistle.begin_half(_HALVES[name])
+    if name in HALVES:
+        whistle.begin_half(HALVES[name])
         return ""
     return _simple(whistle, sight, name)
 
@@ -86,15 +91,15 @@ def _goal(whistle: Whistle, team: Team, more: bool) -> str:
 
 
 def _robot(whistle: Whistle, sight: Sight, name: str, team: Team, namespace: str, names: Names) -> str:
-    known, robot = names.all_outside(sight.robots), names.inside(namespace)
+    known, robot = names.namespaces(sight.robots), names.of_player(namespace)
     if not namespace:
         return f"a {name.replace('_', ' ')} needs a robot; there are {', '.join(known) or 'none'}"
     if namespace not in known:
         return f"no robot '{namespace}'; there are {', '.join(known) or 'none'}"
     if team and team_number(robot) is not team:
         return f"{namespace} does not play for {team.name.lower()}"
-    if name in _CARDS:
-        whistle.card(robot, _CARDS[name])
+    if name in CARDS:
+        whistle.card(robot, CARDS[name])
     else:
         whistle.take_out(robot, name)
     return ""
@@ -117,6 +122,6 @@ def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
         case "reset":
             whistle.begin_match()
         case _:
-            known = [*SET_PIECES, "goal", "subgoal", *_CARDS, "repair", "substitution", *_HALVES]
-            return f"no command '{name}'; there are {', '.join([*known, *_PLAIN])}"
+            known = [*SET_PIECES, *GOALS, *CARDS, *REPAIRS, *HALVES]
+            return f"no command '{name}'; there are {', '.join([*known, *PLAIN])}"
     return ""
