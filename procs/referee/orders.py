@@ -1,4 +1,4 @@
-"""Manual commands: the referee's decisions, made by a person or by a RefBox, with the names of the RefBox."""
+"""Commands by hand: the referee's decisions, made by a person or by a RefBox, with the names of the RefBox."""
 
 from collections.abc import Callable
 
@@ -8,6 +8,7 @@ from procs.referee import halves, restarts
 from procs.referee.cards import Card
 from procs.referee.ends import Team, team_number
 from procs.referee.names import Names
+from procs.referee.reasons import REPAIRS
 from procs.referee.refusals import SET_PIECES, begun_by, why_not
 from procs.referee.restarts import Restart, State
 from procs.referee.sight import Sight
@@ -15,15 +16,19 @@ from procs.referee.whistle import Whistle
 
 _USUAL = Names(PLAYERS)
 _TEAMS = {"": Team.NONE, "cyan": Team.CYAN, "magenta": Team.MAGENTA}
-_CARDS = {"yellow_card": Card.YELLOW, "double_yellow": Card.DOUBLE_YELLOW, "red_card": Card.RED}
-_PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game", "reset")
-_HALVES = {
+CARDS = {"yellow_card": Card.YELLOW, "double_yellow": Card.DOUBLE_YELLOW, "red_card": Card.RED}
+GOALS = ("goal", "subgoal")
+"""`subgoal` takes a goal back."""
+PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game", "reset")
+"""Commands without a team or a robot."""
+HALVES = {
     "first_half": halves.FIRST,
     "second_half": halves.SECOND,
     "first_half_overtime": halves.THIRD,
     "second_half_overtime": halves.FOURTH,
     "penalties": halves.PENALTIES,
 }
+"""Commands that begin a part of the match."""
 
 
 def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: str = "", names: Names = _USUAL) -> str:
@@ -35,12 +40,12 @@ def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: 
         return refused
     if name in SET_PIECES:
         return _set_piece(whistle, sight, name, _TEAMS[team])
-    if name in ("goal", "subgoal"):
+    if name in GOALS:
         return _goal(whistle, _TEAMS[team], name == "goal")
-    if name in _CARDS or name in ("repair", "substitution"):
+    if name in CARDS or name in REPAIRS:
         return _robot(whistle, sight, name, _TEAMS[team], robot, names)
-    if name in _HALVES:
-        whistle.begin_half(_HALVES[name], first=whistle.kicks_off(_HALVES[name]))
+    if name in HALVES:
+        whistle.begin_half(HALVES[name], first=whistle.kicks_off(HALVES[name]))
         return ""
     return _simple(whistle, sight, name)
 
@@ -52,7 +57,7 @@ def _set_piece(whistle: Whistle, sight: Sight, name: str, team: Team) -> str:
     if half:
         whistle.begin_half(half, "by hand", team)
         return ""
-    place, field, ends = whistle.place(sight.ball), whistle.rules.field, whistle.ends
+    place, field, ends = whistle.restart_place(sight.ball), whistle.rules.field, whistle.ends
     made: dict[State, Callable[[], Restart]] = {
         State.KICK_OFF: lambda: restarts.kick_off(team),
         State.FREE_KICK: lambda: restarts.after_foul(place, team.other, field),
@@ -93,20 +98,18 @@ def _goal(whistle: Whistle, team: Team, more: bool) -> str:
 
 
 def _robot(whistle: Whistle, sight: Sight, name: str, team: Team, namespace: str, names: Names) -> str:
-    known = names.all_outside(sight.robots)
-    if not namespace and team:
-        namespace = names.outside(_chosen(whistle, sight, name, team))
-        if not namespace:
-            return f"no robot of {team.name.lower()} is on the field"
-    robot = names.inside(namespace)
-    if not namespace:
-        return f"a {name.replace('_', ' ')} needs a team or a robot; there are {', '.join(known) or 'none'}"
-    if namespace not in known:
-        return f"no robot '{namespace}'; there are {', '.join(known) or 'none'}"
+    there = ", ".join(names.namespaces(sight.robots)) or "none"
+    if not namespace and not team:
+        return f"a {name.replace('_', ' ')} needs a team or a robot; there are {there}"
+    robot = names.of_player(namespace) if namespace else _chosen(whistle, sight, name, team)
+    if not namespace and not robot:
+        return f"no robot of {team.name.lower()} is on the field"
+    if namespace and namespace not in names.namespaces(sight.robots):
+        return f"no robot '{namespace}'; there are {there}"
     if team and team_number(robot) is not team:
         return f"{namespace} does not play for {team.name.lower()}"
-    if name in _CARDS:
-        whistle.card(robot, _CARDS[name])
+    if name in CARDS:
+        whistle.card(robot, CARDS[name])
     else:
         whistle.take_out(robot, name)
     return ""
@@ -133,7 +136,7 @@ def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
         case "stop":
             whistle.stop(sight.ball)
         case "drop_ball":
-            whistle.interrupt(restarts.dropped_ball(whistle.place(sight.ball), whistle.rules.field), "by hand")
+            whistle.interrupt(restarts.dropped_ball(whistle.restart_place(sight.ball), whistle.rules.field), "by hand")
         case "park":
             whistle.park(sight.robots)
         case "half_time":
@@ -143,6 +146,6 @@ def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
         case "reset":
             whistle.begin_match()
         case _:
-            known = [*SET_PIECES, "goal", "subgoal", *_CARDS, "repair", "substitution", *_HALVES]
-            return f"no command '{name}'; there are {', '.join([*known, *_PLAIN])}"
+            known = [*SET_PIECES, *GOALS, *CARDS, *REPAIRS, *HALVES]
+            return f"no command '{name}'; there are {', '.join([*known, *PLAIN])}"
     return ""

@@ -12,6 +12,7 @@ from lcmtypes.soccer import (
     referee_command_t,
 )
 from procs.model.field import Point
+from procs.referee.calls import Call
 from procs.referee.ends import Team
 from procs.referee.names import Names
 from procs.referee.orders import carry_out
@@ -19,7 +20,7 @@ from procs.referee.reasons import OFF_FIELD
 from procs.referee.restarts import State
 from procs.referee.rules import Rules
 from procs.referee.sight import Sight
-from procs.referee.whistle import Call, Whistle
+from procs.referee.whistle import Whistle
 from procs.simulation.physics.events import Event, Kind
 
 _KINDS = frozenset(Kind)
@@ -80,9 +81,9 @@ class Referee(Component):
             self.ball_placement.write()
 
     def _sight(self) -> Sight:
-        ball, inside = self.match_events.value, self._names.inside
-        self._names.meet(robot.name for robot in self.ground_truth.value.robots)
-        robots = {inside(robot.name): robot for robot in self.ground_truth.value.robots}
+        ball, name_of = self.match_events.value, self._names.of_player
+        self._names.learn(robot.name for robot in self.ground_truth.value.robots)
+        robots = {name_of(robot.name): robot for robot in self.ground_truth.value.robots}
         robots.pop("", None)  # what plays in neither team
         reported = [event for report in self.match_events.fresh for event in report.events if event.kind in _KINDS]
         events = [_event(event, self._names) for event in reported if event.kind in _LEAVES or self._concerns(event)]
@@ -95,8 +96,8 @@ class Referee(Component):
 
     def _concerns(self, event: match_event_t) -> bool:
         """Returns whether all robots of an event are players."""
-        inside = self._names.inside
-        return bool(inside(event.robot) and (inside(event.other) or event.kind != Kind.COLLISION))
+        name_of = self._names.of_player
+        return bool(name_of(event.robot) and (name_of(event.other) or event.kind != Kind.COLLISION))
 
     def _obey(self, sight: Sight) -> None:
         for command in self.referee_command:
@@ -116,7 +117,7 @@ class Referee(Component):
         whistle, event = self._whistle, game_event_t()
         event.goal, event.card, event.state, event.team = call.goal, call.card, call.state, call.team
         event.half, event.time_in_half_s = whistle.half, whistle.time_in_half_s
-        event.robot, event.reason = self._names.outside(call.robot), call.reason
+        event.robot, event.reason = self._names.namespace(call.robot), call.reason
         if call.card or call.reason or call.state not in (State.HALF_TIME, State.FROZEN):
             self.match_history.value.events.append(event)
             self._has_grown = True
@@ -128,12 +129,12 @@ class Referee(Component):
         score = f"cyan {whistle.score[Team.CYAN]}:{whistle.score[Team.MAGENTA]} magenta"
         when = f"{whistle.time_in_half_s:.1f} s into half {whistle.half}"
         if call.card:
-            return f"{call.card.name.lower().replace('_', ' ')} card for {self._names.outside(call.robot)}, {when}"
+            return f"{call.card.name.lower().replace('_', ' ')} card for {self._names.namespace(call.robot)}, {when}"
         if call.reason in OFF_FIELD:
-            return f"{call.reason}{f' of {self._names.outside(call.robot)}' if call.robot else ''}, {when}"
+            return f"{call.reason}{f' of {self._names.namespace(call.robot)}' if call.robot else ''}, {when}"
         what = "final whistle" if call.state is State.FROZEN else call.state.name.lower().replace("_", " ")
         whose = f" for {call.team.name.lower()}" if call.team else ""
-        why = f" ({', '.join(filter(None, (call.reason, self._names.outside(call.robot))))})" if call.reason else ""
+        why = f" ({', '.join(filter(None, (call.reason, self._names.namespace(call.robot))))})" if call.reason else ""
         return f"{what}{whose}{why}, {score}, {when}"
 
     def _write_state(self) -> None:
@@ -143,7 +144,7 @@ class Referee(Component):
         game.score_cyan, game.score_magenta = whistle.score[Team.CYAN], whistle.score[Team.MAGENTA]
         game.time_in_half_s, game.time_in_state_s = whistle.time_in_half_s, whistle.time_in_state_s
         game.ball_x_m, game.ball_y_m = whistle.spot
-        game.sent_off = self._names.all_outside(whistle.cards.sent_off)
+        game.sent_off = self._names.namespaces(whistle.cards.sent_off)
         game.decisions = len(self.match_history.value.events)
         self.game_state.write()
 
@@ -154,5 +155,5 @@ class Referee(Component):
 
 
 def _event(event: match_event_t, names: Names) -> Event:
-    robot, other = names.inside(event.robot), names.inside(event.other)
+    robot, other = names.of_player(event.robot), names.of_player(event.other)
     return Event(Kind(event.kind), robot, other, event.x_m, event.y_m, event.speed_m_s)

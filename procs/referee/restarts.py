@@ -5,6 +5,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from procs.model.field import Field, Point
+from procs.model.geometry import clamp
 from procs.referee.ends import Ends, Team
 
 
@@ -31,8 +32,9 @@ class Restart(NamedTuple):
     spot: Point
 
 
-_CORNER_INSET_M = 0.2
-_LINE_INSET_M = 0.1
+_CORNER_INSET_M = 0.2  # of a corner kick's ball from both lines
+_LINE_INSET_M = 0.1  # of a throw-in's ball from the touch line
+_FREE_KICK_INSET_M = 0.5  # of a free kick's ball from the touch lines, at least
 
 
 def kick_off(team: Team) -> Restart:
@@ -94,8 +96,8 @@ def penalty(team: Team, field: Field, ends: Ends) -> Restart:
 
 def _for_free_kick(place: Point, field: Field) -> Point:
     x_m = _within(place.x_m, field.half_length_m - field.penalty_mark_distance_m)
-    return Point(x_m, _within(place.y_m, field.half_width_m - 0.5))
+    return Point(x_m, _within(place.y_m, field.half_width_m - _FREE_KICK_INSET_M))
 
 
 def _within(value_m: float, limit_m: float) -> float:
-    return min(limit_m, max(-limit_m, value_m))
+    return clamp(value_m, -limit_m, limit_m)

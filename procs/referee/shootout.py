@@ -1,6 +1,13 @@
-"""Penalties after a drawn overtime: the teams shoot in turns until one cannot be caught any more (2016)."""
+"""Penalties after a drawn overtime: the teams shoot in turn until one of them cannot be caught any more (2016)."""
 
-from procs.referee.ends import Team
+from procs.referee.ends import Team, team_number
+from procs.referee.fouls.foul import Scene
+from procs.referee.restarts import Restart
+from procs.referee.stretch import Stretch
+from procs.simulation.physics.events import Kind
+
+_LEAVES = (Kind.GOAL, Kind.OUT_SIDE, Kind.OUT_END)
+"""Events of a ball that has left the field."""
 
 
 class Shootout:
@@ -32,3 +39,19 @@ class Shootout:
     def take_back(self, team: Team) -> None:
         """Counts one of a team's goals as a miss, if it has any."""
         self.goals[team] = max(0, self.goals[team] - 1)
+
+
+def penalty_scored(scene: Scene, stretch: Stretch, penalty: Restart, time_s: float) -> bool | None:
+    """Returns whether a penalty is scored or missed, `time_s` after its start; None while it goes on.
+
+    A goal, the ball out, a further touch or time ends it. It is one shot: after it no robot of the shooting team may
+    touch the ball, even if the goalkeeper has.
+    """
+    left = [event for event in scene.sight.events if event.kind in _LEAVES]
+    attacked = scene.ends.side_of(penalty.team.other)
+    again = stretch.released and any(team_number(robot) is penalty.team for robot in scene.sight.touching)
+    scored = not again and any(event.kind is Kind.GOAL and event.x_m * attacked > 0 for event in left)
+    stretch.rolled(scene.sight.ball, scene.rules)
+    late = not scene.touches.robots and time_s >= scene.rules.penalty_s
+    missed = bool(left) or late or again or time_s >= scene.rules.shot_s
+    return scored if scored or missed else None

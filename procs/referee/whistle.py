@@ -1,46 +1,31 @@
-"""The referee's state machine: from what it sees in each tick to the state of the game.
+"""The referee's state machine: turns the sight of each tick into the state of the game.
 
 A stretch of the game is stopped (robots take position), then started (a set piece is taken), then played, until a goal,
 a ball out of the field, a foul or a deadlock interrupts it.
 """
 
-import math
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from procs.model.field import Point
 from procs.referee import goals, halves, restarts
+from procs.referee.ball_placing import BallPlacing
+from procs.referee.calls import Call
 from procs.referee.cards import Card, Cards
 from procs.referee.ends import Ends, Team, team_number
 from procs.referee.fouls.dribbling import dribbling
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.fouls.pushing import collision
 from procs.referee.fouls.set_piece import breach
-from procs.referee.positions import misplaced
+from procs.referee.line_up import misplaced_robots, too_few_robots
 from procs.referee.reasons import PARK, RESET
 from procs.referee.restarts import Restart, State
 from procs.referee.rules import Rules
-from procs.referee.shootout import Shootout
+from procs.referee.shootout import Shootout, penalty_scored
 from procs.referee.sight import Sight
 from procs.referee.stretch import Stretch
 from procs.simulation.physics.events import Event, Kind
 
-_MISPLACED_M = 0.6  # the crew may have to put the ball beside a robot; further away, a robot has pushed it
-_CREW_S = 0.5  # until the report shows a placement
 _REPEATS = 2  # of a set piece; then the game goes on in spite of a breach
-
-
-class Call(NamedTuple):
-    """Decision of the referee, for the record: a goal, a card, a robot off the field, or else a whistle."""
-
-    state: State
-    team: Team
-    goal: bool = False
-    """By `team`."""
-    robot: str = ""
-    """That committed a foul, got the card, or leaves the field."""
-    card: Card = Card.NONE
-    reason: str = ""
 
 
 class Whistle:
@@ -48,7 +33,7 @@ class Whistle:
 
     def __init__(self, rules: Rules) -> None:
         self.rules = rules
-        self.state, self.team, self.spot = restarts.kick_off(Team.CYAN)
+        self.state, self.team, spot = restarts.kick_off(Team.CYAN)
         self.stopped = True
         """Robots take position; the ball is not to be touched."""
         self.held = False
@@ -58,18 +43,15 @@ class Whistle:
         self.ends = Ends()
         self.time_in_half_s = 0.0
         self.time_in_state_s = 0.0
-        self.placements = 1
-        """A higher number than before: the ball is to be put on `spot`."""
         self.cards = Cards()
         self.shootout: Shootout | None = None
         self.calls: list[Call] = []
+        self._ball = BallPlacing(spot)
         self._begun = False  # whether a set piece of the half was started
-        self._left_at: Point | None = None  # by the ball: where it was when the game was last stopped
         self._changing_ends = False
         self._starting = False  # the game starts as soon as the ball is on its spot
-        self._since_placed_s = 0.0
         self._repeats = 0
-        self._stretch = Stretch(self.state, self.spot)
+        self._stretch = Stretch(self.state, spot)
 
     @property
     def over(self) -> bool:
@@ -82,13 +64,23 @@ class Whistle:
         return self.state in (State.HALF_TIME, State.FROZEN)
 
     @property
+    def spot(self) -> Point:
+        """Place of the ball at the set piece; world frame."""
+        return self._ball.spot
+
+    @property
+    def placements(self) -> int:
+        """Number of placements so far: with a higher number than before, the ball is to be put on `spot`."""
+        return self._ball.number
+
+    @property
     def restart(self) -> Restart:
         """The set piece at hand."""
         return Restart(self.state, self.team, self.spot)
 
-    def place(self, ball: Point) -> Point:
+    def restart_place(self, ball: Point) -> Point:
         """Returns the place to which a set piece by hand belongs: where play was stopped, or else where the ball is."""
-        return self._left_at if self.stopped and self._left_at else ball
+        return self._ball.left_at if self.stopped and self._ball.left_at else ball
 
     def step(self, duration_s: float, sight: Sight) -> None:
         """Runs one tick of `duration_s`."""
@@ -103,7 +95,8 @@ class Whistle:
                 self._end_break()
             return
         self.time_in_half_s += duration_s
-        self._remember(sight.ball)
+        if not self.stopped:
+            self._ball.remember(sight.ball, self.rules.field)
         if not self.rules.automatic:
             self._follow(duration_s, sight)
         elif not self.shootout and self.time_in_half_s >= halves.length_s(self.half, self.rules):
@@ -123,7 +116,7 @@ class Whistle:
         """Begins a half with its kick-off, or the penalties with the first one; `first` is the team that has it."""
         ends = halves.ends_of(half, self.rules)
         self._changing_ends, self.ends = self._changing_ends or ends != self.ends, ends
-        self.half, self.time_in_half_s, self._left_at = half, 0.0, None
+        self.half, self.time_in_half_s, self._ball.left_at = half, 0.0, None
         self.shootout = Shootout(self.rules.penalties, first or Team.CYAN) if half == halves.PENALTIES else None
         kick_off = restarts.kick_off(first or halves.kicks_off(half))
         self.interrupt(self._next_penalty() if self.shootout else kick_off, reason)
@@ -136,9 +129,10 @@ class Whistle:
 
     def stop(self, ball: Point) -> None:
         """Stops the game until it is started by hand; from play it goes on with a dropped ball where the ball is."""
-        self._remember(ball)
+        if not self.stopped:
+            self._ball.remember(ball, self.rules.field)
         if self.state is State.PLAY:
-            self.interrupt(restarts.ball_left_there(self._left_at or ball, self.rules.field), "by hand")
+            self.interrupt(restarts.ball_left_there(self._ball.left_at or ball, self.rules.field), "by hand")
         elif not self.at_rest:
             self._enter(self.state, self.team, stopped=True)
         self.held, self._starting = True, False
@@ -168,19 +162,19 @@ class Whistle:
         """Stops the game for a set piece and has the ball placed."""
         self._repeats = self._repeats + 1 if restart == self.restart and not self.stopped else 0
         self._enter(restart.state, restart.team, stopped=True)
-        self.spot, self.held, self._starting = restart.spot, False, False
+        self.held = self._starting = False
         self.calls.append(Call(restart.state, restart.team, robot=robot, reason=reason))
-        self._place()
+        self._ball.place(restart.spot)
 
     def start(self, sight: Sight | None = None) -> None:
-        """Lets the set piece be taken; a ball that was just given to the crew is waited for."""
-        self._starting = sight is not None and self._is_carried(sight.ball)
+        """Lets the set piece be taken; waits for a ball that was just given to the crew."""
+        self._starting = sight is not None and self.stopped and self._ball.is_under_way(sight.ball)
         if self._starting:
             return
         self._enter(self.state, self.team, stopped=False)
         self.held = self._changing_ends = False
         self._begun = True
-        excused = self._misplaced(sight) if sight else []
+        excused = misplaced_robots(self.restart, sight, self.ends, self.rules.field) if sight else []
         ball = sight.ball if sight else self.spot
         self._stretch = Stretch(self.state, ball, frozenset(excused))
 
@@ -217,12 +211,6 @@ class Whistle:
             self.cards.take_out(robot, self.rules.repair_s)
         self.calls.append(Call(self.state, Team.NONE, reason=PARK))
 
-    def _misplaced(self, sight: Sight) -> list[str]:
-        """Returns the robots that are misplaced: distances are those to the ball, which may lie beside the spot."""
-        keeper = sight.goalkeeper(self.team.other)
-        restart = self.restart._replace(spot=sight.ball)
-        return misplaced(restart, sight.robots, self.ends, self.rules.field, keeper)
-
     def _follow(self, duration_s: float, sight: Sight) -> None:
         """Follows a game that is led by hand: set pieces become play, except for penalties that decide the match."""
         if self.stopped:
@@ -234,36 +222,22 @@ class Whistle:
 
     def _guard_ball(self, duration_s: float, sight: Sight) -> None:
         """Has the ball put back if a robot has pushed it away; starts the game if that was to happen with the ball."""
-        self._since_placed_s += duration_s
+        self._ball.pass_time(duration_s)
         if self._starting:
             self.start(sight)
-        elif math.dist(sight.ball, self.spot) > _MISPLACED_M and self._since_placed_s > _CREW_S:
-            self._place()
-
-    def _is_carried(self, ball: Point) -> bool:
-        """Returns whether the crew has not had the time to put the ball on its spot."""
-        return self.stopped and self._since_placed_s <= _CREW_S and math.dist(ball, self.spot) > _MISPLACED_M
+        elif self._ball.is_pushed_away(sight.ball):
+            self._ball.place(self.spot)
 
     def _wait_for_robots(self, duration_s: float, sight: Sight) -> None:
         self._guard_ball(duration_s, sight)
         rules = self.rules
         stoppage_s = rules.kick_off_stoppage_s if self.state is State.KICK_OFF else rules.stoppage_s
         waits = self.held or self._starting or self.time_in_state_s < stoppage_s
-        if not self.stopped or waits or self._too_few(sight):
+        if not self.stopped or waits or too_few_robots(sight, self.cards, rules.least_robots):
             return
-        patience_s = rules.ends_s if self._changing_ends else rules.positions_s
-        if self.time_in_state_s < stoppage_s + patience_s and self._misplaced(sight):
-            return
-        self.start(sight)
-
-    def _too_few(self, sight: Sight) -> bool:
-        """Returns whether a team has too few robots and may get more; red cards leave none to wait for."""
-        return any(self._waits_for(team, len(sight.team(team))) for team in (Team.CYAN, Team.MAGENTA))
-
-    def _waits_for(self, team: Team, robots: int) -> bool:
-        away = [robot for robot in self.cards.sent_off if team_number(robot) is team]
-        dismissed, least = len(self.cards.dismissed.intersection(away)), self.rules.least_robots
-        return 0 < robots < least and (robots + dismissed < least or dismissed < len(away))
+        longest_s = stoppage_s + (rules.ends_s if self._changing_ends else rules.positions_s)
+        if self.time_in_state_s >= longest_s or not misplaced_robots(self.restart, sight, self.ends, rules.field):
+            self.start(sight)
 
     def _watch(self, duration_s: float, sight: Sight) -> None:
         scene = self._stretch.watch(duration_s, sight, self.ends, self.rules)
@@ -297,51 +271,45 @@ class Whistle:
         self._stretch.rolled(ball, self.rules)
         committed, punished = self._stretch.fouls(scene)
         if committed:
-            self._warn(committed)
+            self._count_foul(committed)
         if punished:
             self._give_free_kick(punished)
         elif self._stretch.deadlocked(scene):
             self.interrupt(restarts.dropped_ball(ball, self.rules.field), "deadlock")
 
     def _watch_set_piece(self, scene: Scene) -> None:
-        foul = breach(scene, self.restart, self._stretch.excused)
+        ball, rules, touched = scene.sight.ball, self.rules, bool(scene.touches.robots)
+        longest_s = rules.penalty_s if self.state is State.PENALTY else rules.set_piece_s
         grave = collision(scene) or dribbling(scene)
         if grave:
-            self._warn(grave)
+            self._count_foul(grave)
             self._give_free_kick(grave)
-        elif foul and self._repeats < _REPEATS:
-            self._warn(foul)
-            self.interrupt(self.restart, foul.reason, foul.robot)
-        elif (self.state is State.DROP_BALL and scene.touches.robots) or self._stretch.rolled(
-            scene.sight.ball, self.rules
-        ):
-            self._play(scene.sight.ball)
-        elif self.state is State.PENALTY and not scene.touches.robots:
-            if self.time_in_state_s >= self.rules.penalty_s:
+        elif self._repeat(scene):
+            return
+        elif (self.state is State.DROP_BALL and touched) or self._stretch.rolled(ball, rules):
+            self._play(ball)
+        elif self.time_in_state_s >= longest_s:
+            if self.state is State.PENALTY and not touched:
                 self.interrupt(self._goal_kick(), "penalty not taken in time")
-        elif self.time_in_state_s >= (self.rules.penalty_s if self.state is State.PENALTY else self.rules.set_piece_s):
-            self._play(scene.sight.ball)
+            else:
+                self._play(ball)
 
     def _watch_penalty(self, scene: Scene) -> None:
-        """Watches one of the penalties that decide a match: a goal, the ball out, a further touch or time ends it.
-
-        It is one shot: after it no robot of the shooting team may touch the ball, even if the goalkeeper has.
-        """
-        assert self.shootout
-        foul = breach(scene, self.restart, self._stretch.excused)
-        if foul and self._repeats < _REPEATS:
-            self._warn(foul)
-            self.interrupt(self.restart, foul.reason, foul.robot)
+        """Watches one of the penalties that decide a match."""
+        if self._repeat(scene):
             return
-        left = [event for event in scene.sight.events if event.kind in (Kind.GOAL, Kind.OUT_SIDE, Kind.OUT_END)]
-        attacked = self.ends.side_of(self.team.other)
-        again = self._stretch.released and any(team_number(robot) is self.team for robot in scene.sight.touching)
-        scored = not again and any(event.kind is Kind.GOAL and event.x_m * attacked > 0 for event in left)
-        self._stretch.rolled(scene.sight.ball, self.rules)
-        late = not scene.touches.robots and self.time_in_state_s >= self.rules.penalty_s
-        missed = bool(left) or late or again or self.time_in_state_s >= self.rules.shot_s
-        if scored or missed:
+        scored = penalty_scored(scene, self._stretch, self.restart, self.time_in_state_s)
+        if scored is not None:
             self.end_penalty(scored)
+
+    def _repeat(self, scene: Scene) -> bool:
+        """Has the set piece repeated after a breach, twice at most; returns whether it does."""
+        foul = breach(scene, self.restart, self._stretch.excused)
+        if foul is None or self._repeats >= _REPEATS:
+            return False
+        self._count_foul(foul)
+        self.interrupt(self.restart, foul.reason, foul.robot)
+        return True
 
     def _give_free_kick(self, foul: Foul) -> None:
         """Interrupts the game for the free kick, or the penalty, that the foul brings."""
@@ -351,7 +319,8 @@ class Whistle:
         else:
             self.interrupt(restarts.after_foul(foul.place, offender, field), foul.reason, foul.robot)
 
-    def _warn(self, foul: Foul) -> None:
+    def _count_foul(self, foul: Foul) -> None:
+        """Counts a foul against its robot, and shows the card that it brings."""
         card = self.cards.foul(foul.robot, self.rules)
         if card:
             self.calls.append(Call(self.state, team_number(foul.robot), robot=foul.robot, card=card))
@@ -362,16 +331,6 @@ class Whistle:
     def _next_penalty(self) -> Restart:
         assert self.shootout
         return restarts.penalty(self.shootout.shooter, self.rules.field, self.ends)
-
-    def _remember(self, ball: Point) -> None:
-        """Remembers where the ball is while the game runs; of a ball that is out, where it was first seen outside."""
-        inside = self.rules.field.in_field
-        if not self.stopped and (self._left_at is None or inside(*self._left_at) or inside(*ball)):
-            self._left_at = ball
-
-    def _place(self) -> None:
-        self.placements += 1
-        self._since_placed_s = 0.0
 
     def _play(self, ball: Point) -> None:
         self._stretch.begin_play(ball)

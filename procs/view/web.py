@@ -1,13 +1,16 @@
 """The match in the web console: a view from above, and the referee's page."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from fwk.web import Newest, OpenPage, Page, RunAccess, Scene, View
 from lcmtypes.soccer import ground_truth_t, pose_t, true_robot_t, world_model_t
 from procs.model.ball import BALL
 from procs.model.field import SIDES, Field, field_of
 from procs.model.robot import CYAN, MAGENTA, ROBOT, number_in, team_in
+from procs.referee.orders import CARDS, GOALS, HALVES, PLAIN
+from procs.referee.reasons import REPAIRS
+from procs.referee.refusals import SET_PIECES
 from procs.view.camera_sight import CALIBRATION, SEES, draw_sight
 from procs.view.scoreboard import GAME_STATE, MEASURES, TRUTH, headline
 
@@ -76,10 +79,8 @@ class RefereePage(Page):
     icon = "sports"
     needs = ("world/referee_command@outside", GAME_STATE)
 
-    PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game", "reset")
-    HALVES = ("first_half", "second_half", "first_half_overtime", "second_half_overtime")
-    OF_TEAM = ("kickoff", "freekick", "goalkick", "throwin", "corner", "penalty", "goal", "subgoal")
-    OF_ROBOT = ("yellow_card", "double_yellow", "red_card", "repair", "substitution")
+    OF_TEAM = (*SET_PIECES, *GOALS)
+    OF_ROBOT = (*CARDS, *REPAIRS)
 
     def build(self, page: OpenPage) -> None:
         """Makes the elements of the page."""
@@ -95,7 +96,7 @@ class RefereePage(Page):
         if not page.may_steer:
             return
 
-        def buttons(names: Sequence[str], team: str = "", colour: str = "primary") -> None:
+        def buttons(names: Iterable[str], team: str = "", colour: str = "primary") -> None:
             with ui.row().classes("q-px-md gap-1"):
                 for name in names:
                     button = ui.button(
@@ -107,8 +108,8 @@ class RefereePage(Page):
             members = {"name": name, "team": team, "robot": robot.value or "" if name in self.OF_ROBOT else ""}
             await page.do(run.call("world/referee_command", members))
 
-        buttons(self.PLAIN)
-        buttons(self.HALVES)
+        buttons(PLAIN)
+        buttons(HALVES)
         for team, colour in COLOURS.items():
             ui.label(team).classes("q-px-md text-subtitle1")
             buttons(self.OF_TEAM, team, colour)

@@ -1,6 +1,7 @@
 """Cases of the rules, each with the tests that show it, and the tests of cases that no other module shows."""
 
 import importlib
+from pathlib import Path
 
 import pytest
 
@@ -240,3 +241,7 @@ def test_shootout_counts_shots_in_turns() -> None:
     assert shootout.shooter is CYAN
     shootout.shot(scored=True)
     assert (shootout.shooter, shootout.goals[CYAN], shootout.decided) == (MAGENTA, 1, False)
+
+
+def test_page_counts_the_rules() -> None:
+    assert f"all of {len(CASES)} rules" in (Path(__file__).parents[3] / "docs" / "soccer.md").read_text()

@@ -16,7 +16,12 @@ from lcmtypes.soccer import (
     true_robot_t,
     world_model_t,
 )
-from procs.view.web import COLOURS, MatchView
+from procs.model.field import Point
+from procs.referee.orders import HALVES, PLAIN, carry_out
+from procs.referee.rules import Rules
+from procs.referee.sight import Sight
+from procs.referee.whistle import Whistle
+from procs.view.web import COLOURS, MatchView, RefereePage
 
 
 def match() -> dict[str, Any]:
@@ -111,3 +116,8 @@ def test_dragging_places_robots_and_ball() -> None:
         ("world/place_ball", {"x_m": 0.5, "y_m": 0.25}),
         ("world/place_robot", {"robot": "cyan1", "x_m": 0.5, "y_m": 0.25, "heading_rad": 0.0}),
     ]
+
+
+def test_referee_page_has_a_button_for_every_command() -> None:
+    known = carry_out(Whistle(Rules()), Sight(Point(0.0, 0.0)), "nonsense").partition("there are ")[2].split(", ")
+    assert sorted(known) == sorted([*PLAIN, *HALVES, *RefereePage.OF_TEAM, *RefereePage.OF_ROBOT])

@@ -1,0 +1,47 @@
+"""The ball of a set piece: its spot, the crew that puts it there, and where it was when play was stopped."""
+
+import math
+
+from procs.model.field import Field, Point
+
+_MISPLACED_M = 0.6  # the crew may have to put the ball beside a robot; further away, a robot has pushed it
+_CREW_S = 0.5  # until the report shows a placement
+
+
+class BallPlacing:
+    """Placements of the ball by the crew; world frame."""
+
+    def __init__(self, spot: Point) -> None:
+        self.spot = spot
+        """Place of the ball at the set piece."""
+        self.number = 1
+        """Number of the newest placement: with a higher number than before, the crew puts the ball on `spot`."""
+        self.left_at: Point | None = None
+        """Place of the ball when the game was last stopped."""
+        self._since_s = 0.0
+
+    def place(self, spot: Point) -> None:
+        """Has the ball put on the spot."""
+        self.spot = spot
+        self.number += 1
+        self._since_s = 0.0
+
+    def pass_time(self, duration_s: float) -> None:
+        """Lets time go by since the newest placement."""
+        self._since_s += duration_s
+
+    def is_under_way(self, ball: Point) -> bool:
+        """Returns whether the crew has not had the time to put the ball on its spot."""
+        return self._since_s <= _CREW_S and self._is_away(ball)
+
+    def is_pushed_away(self, ball: Point) -> bool:
+        """Returns whether a robot has pushed the ball away after the crew had put it down."""
+        return self._since_s > _CREW_S and self._is_away(ball)
+
+    def remember(self, ball: Point, field: Field) -> None:
+        """Remembers the place of the ball in a running game; of a ball that is out, where it was first seen outside."""
+        if self.left_at is None or field.in_field(*self.left_at) or field.in_field(*ball):
+            self.left_at = ball
+
+    def _is_away(self, ball: Point) -> bool:
+        return math.dist(ball, self.spot) > _MISPLACED_M

@@ -1,0 +1,25 @@
+"""Conditions for the start of a set piece: robots stand where the rules allow it, and no team waits for a robot."""
+
+from procs.model.field import Field
+from procs.referee.cards import Cards
+from procs.referee.ends import Ends, Team, team_number
+from procs.referee.positions import misplaced
+from procs.referee.restarts import Restart
+from procs.referee.sight import Sight
+
+
+def misplaced_robots(restart: Restart, sight: Sight, ends: Ends, field: Field) -> list[str]:
+    """Returns the robots that are misplaced: distances are those to the ball, which may lie beside the spot."""
+    keeper = sight.goalkeeper(restart.team.other)
+    return misplaced(restart._replace(spot=sight.ball), sight.robots, ends, field, keeper)
+
+
+def too_few_robots(sight: Sight, cards: Cards, least_robots: int) -> bool:
+    """Returns whether a team has too few robots and may get more; red cards leave none to wait for."""
+    return any(_waits(team, len(sight.team(team)), cards, least_robots) for team in (Team.CYAN, Team.MAGENTA))
+
+
+def _waits(team: Team, robots: int, cards: Cards, least_robots: int) -> bool:
+    away = [robot for robot in cards.sent_off if team_number(robot) is team]
+    dismissed = len(cards.dismissed.intersection(away))
+    return 0 < robots < least_robots and (robots + dismissed < least_robots or dismissed < len(away))
