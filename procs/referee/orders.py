@@ -116,7 +116,7 @@ def _robot(whistle: Whistle, sight: Sight, name: str, team: Team, namespace: str
 
 
 def _chosen(whistle: Whistle, sight: Sight, name: str, team: Team) -> str:
-    """Returns the robot of a team that a command means that names none, as those of a RefBox; empty without any.
+    """Returns the robot that a command for a team means, as a RefBox gives them; empty if none is on the field.
 
     It is the highest number on the field. The second yellow card goes to a robot that has one.
     """
