@@ -50,7 +50,7 @@ def phase(state: game_state_t) -> str:
 
 
 def play_time(time_s: float) -> str:
-    """Minutes and seconds: `03:12`."""
+    """Returns minutes and seconds: `03:12`."""
     minutes, seconds = divmod(int(time_s), 60)
     return f"{minutes:02d}:{seconds:02d}"
 
