@@ -187,7 +187,7 @@ class Skiller(Component):
         self.drive_target.write()
 
     def _drive_blind(self, blind: Blind | None) -> None:
-        """Sends the velocity of a robot that does not know its place, and once that there is none any more."""
+        """Sends the velocity of a robot that does not know its place, and its end once."""
         command = self.blind_drive.value
         if blind is None and not command.enabled:
             return

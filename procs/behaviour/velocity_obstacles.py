@@ -21,7 +21,7 @@ _HORIZON_S = 1.6
 _REACTION_S = 0.35
 """A robot that touches another already is judged by its velocity after this time."""
 _LATE_S = 0.4
-"""The robot evades one that gives way only if they would collide so soon."""
+"""The robot evades a mate that gives way only if they would collide so soon."""
 _SOONEST_S = 0.15
 """An earlier collision costs no more."""
 _TOUCH_M_S = 0.4

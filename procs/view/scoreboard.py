@@ -1,4 +1,4 @@
-"""The score in words: one line for a running match, a few for one that has ended."""
+"""The score in words: one line for a running match, a few lines for a match that has ended."""
 
 from collections import Counter
 from collections.abc import Callable

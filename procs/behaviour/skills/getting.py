@@ -68,7 +68,7 @@ class _Capture(StateMachine):
         return scene.view.ball.speed_m_s > _KEPT_M_S and self._stand.time_s < _GIVING_S and near
 
     def _settle(self, scene: Scene) -> Step:
-        """The ball follows the robot, which stops before it has pulled the ball back."""
+        """Stops the robot before it has pulled the ball back; the ball follows."""
         return Step(Drive(scene.view.own.place, scene.view.own.heading_rad), dribble=True)
 
     def _keep_ball(self, _scene: Scene) -> Step:
