@@ -52,7 +52,7 @@ def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: 
 
 def _set_piece(whistle: Whistle, sight: Sight, state: State, team: Team) -> str:
     if not team:
-        return f"a {state.name.lower().replace('_', ' ')} needs a team: cyan or magenta"
+        return f"a {state.words} needs a team: cyan or magenta"
     place, field, ends = whistle.restart_place(sight.ball), whistle.rules.field, whistle.ends
     made: dict[State, Callable[[], Restart]] = {
         State.KICK_OFF: lambda: restarts.kick_off(team),

@@ -93,7 +93,7 @@ def test_goal_by_hand_is_that_of_the_penalty_at_hand() -> None:
     assert ask(script, "goal", "cyan") == ""
     assert (script.state, script.score) == ((State.PENALTY, MAGENTA, True), (1, 0))
     assert counted(script) == ([1, 0], [1, 0])
-    assert ask(script, "goal", "cyan") == "cyan cannot score: the penalty is one of magenta"
+    assert ask(script, "goal", "cyan") == "cyan cannot score: the penalty is that of magenta"
     assert ask(script, "goal", "magenta") == ""
     assert (script.score, counted(script)) == ((1, 1), ([1, 1], [1, 1]))
 
