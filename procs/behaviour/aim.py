@@ -10,10 +10,12 @@ from procs.behaviour.view import Robot
 from procs.model.field import Field, Point
 from procs.model.geometry import bearing_rad, wrap_rad
 
-_REACTION_S = 0.25
-_STEP_ASIDE_M_S = 0.8
-_BALL_M_S = 9.0
-_TARGETS = 13
+_REACTION_S, _STEP_ASIDE_M_S = 0.25, 0.8  # a robot begins to step into the ball's way so late, and gets there so fast
+_BALL_M_S = 9.0  # mean speed of a shot
+_TARGETS, _INSIDE_M = (
+    13,
+    0.15,
+)  # points on the goal line for a shot, the outermost so far inside the posts
 _LOB_INSIDE_M = 0.5  # lobs are aimed so far inside the posts
 _OVER_M = 0.06  # by which a lob passes over a robot, as the kicker's speed is not exact
 _LOB_TARGETS = 5
@@ -21,12 +23,14 @@ _SOON_S = 0.2  # from the view until a lob passes a robot nearby
 _LOB_RAD = 0.1  # more room beside the robots before the rising ball is not needed
 LANE_RAD = 0.12
 """Room beside a pass's way that is enough."""
-_PASS_M_S = 4.3
+_PASS_M_S = 4.3  # mean speed of a pass
+_NEAREST_M, _FURTHEST_M = 2.0, 9.0  # way of a pass
+_MOST_RAD = 0.4  # a free angle beyond that is worth no more
 _LEAD_S = 0.5  # a mate is assumed to drive on for this time
 _GAIN_1_M = 0.06  # a metre gained is worth as much as this angle of free path in rad
 TURN_1_RAD = 0.15
 """Angle of free path that a radian of turning costs."""
-_ROOM_1_M, _ROOM_M = 0.06, 5.0  # so much is a metre between the receiver and its nearest rival worth, up to so many
+_ROOM_1_M, _ROOM_M = 0.06, 5.0  # value in rad of a metre between the receiver and its nearest rival, and how many count
 _KEPT_RAD = 0.2  # a receiver is kept unless another is so much better
 
 
@@ -62,7 +66,7 @@ def best_shot(start: Point, robots: Iterable[Robot], field: Field, bodies: Bodie
     in_the_way = list(robots)
     posts = field.goal_posts(1.0)
     post_m = field.post_diameter_m / 2 + bodies.ball_radius_m
-    inner_m = field.goal_width_m / 2 - 0.15
+    inner_m = field.goal_width_m / 2 - _INSIDE_M
     best = Aim(field.goal_centre(1.0), -math.pi)
     for index in range(_TARGETS):
         target = Point(field.half_length_m, inner_m * (2 * index / (_TARGETS - 1) - 1))
@@ -125,11 +129,11 @@ def best_pass(
         lead_s = min(_LEAD_S, math.dist(player.place, mate.place) / _PASS_M_S)
         place = Point(mate.place.x_m + lead_s * mate.velocity_m_s.x_m, mate.place.y_m + lead_s * mate.velocity_m_s.y_m)
         gain_m = place.x_m - player.place.x_m
-        if not 2.0 <= math.dist(player.place, place) <= 9.0 or gain_m < -back_m:
+        if not _NEAREST_M <= math.dist(player.place, place) <= _FURTHEST_M or gain_m < -back_m:
             continue
         free_rad = lane_rad(player.place, place, others, bodies, _PASS_M_S)
         turn_rad = abs(wrap_rad(bearing_rad(player.place, place) - player.heading_rad))
-        worth = min(free_rad, 0.4) + _GAIN_1_M * gain_m - TURN_1_RAD * turn_rad + _KEPT_RAD * (mate.name == kept)
+        worth = min(free_rad, _MOST_RAD) + _GAIN_1_M * gain_m - TURN_1_RAD * turn_rad + _KEPT_RAD * (mate.name == kept)
         worth += _ROOM_1_M * min(_ROOM_M, min((math.dist(place, other.place) for other in others), default=_ROOM_M))
         rank = (free_rad >= (0.0 if mate.name == kept else LANE_RAD), worth)
         if best is None or rank > best[0]:

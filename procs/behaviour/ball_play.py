@@ -30,22 +30,21 @@ _STUCK_S, _STUCK_M = 0.6, 0.3  # a ball that gets no further must go before the 
 _FREE_S = 0.3  # a ball that is lost for longer is set free
 _DRIBBLE_M = 1.0  # then a poorer shot or a pass will do ...
 _RELEASE_M = 1.2  # ... and then the ball must go; the rules allow 3 m, and braking takes its way
-_LONGEST_M = 2.3
+_LONGEST_M = 2.3  # a dribble ends so far from where the robot took the ball
 _GENTLE_M_S = 2.2  # arrival of a pass from a set piece, whose receiver has time
-_PUSH_M = 3.0
-_PUSH_M_S = 1.2
-_SLOW_BALL_M_S = 2.5
+_PUSH_M, _PUSH_M_S = 3.0, 1.2  # way of a push, and speed of the ball at its end
+_SLOW_BALL_M_S = 2.5  # mean speed of a dribbled or pushed ball
 _CLEARING_RAD = (0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2)  # directions of a clearance
 _CLEARED_M = 6.0  # and the way that should be free
 _UPFIELD_1_M = 0.03  # a metre gained before the ball is out is worth so much
 _AIMED_M = 1.5  # a clearance is aimed at a point so near: roughly
-_WAYS_RAD = (0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2)
+_WAYS_RAD = (0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2)  # directions of a dribble, off the way to the goal
 _DETOUR_RAD = 0.3  # a radian off the way to the goal costs so much free path
 _ASIDE_M = 1.2  # way to a place with more room for a shot
-_ASIDE_RAD = (0.0, 0.7, -0.7, 1.3, -1.3)
+_ASIDE_RAD = (0.0, 0.7, -0.7, 1.3, -1.3)  # directions to such a place, off the way to the goal
 _CARRIED_M = 2.3  # way of a dribble
 _BEFORE_GOAL_M = 2.5  # robots with the ball keep that distance from the goal line
-_COMMITTED_S = 1.6  # a kick once begun is carried out in this time, unless its way is blocked
+_COMMITTED_S = 1.6  # the robot keeps for so long to a kick that it has begun, unless the way gets blocked
 
 
 class BallPlay:

@@ -7,11 +7,9 @@ from procs.behaviour.bodies import Bodies
 from procs.behaviour.view import Ball, View
 from procs.model.field import Point
 
-_STEP_S = 0.1
-_HORIZON_S = 4.0
-_RESTING_M_S = 0.2
-_SPEED_M_S = 2.5
-_ACCELERATION_M_S2 = 2.5
+_STEP_S, _HORIZON_S = 0.1, 4.0  # the ball's way is looked at in steps, up to the horizon
+_RESTING_M_S = 0.2  # a slower ball counts as at rest
+_SPEED_M_S, _ACCELERATION_M_S2 = 2.5, 2.5  # of a robot on its way to the ball; the navigator allows more
 _CARRY_S = 0.25
 """A robot that drives reaches what a robot at rest reaches from the place where it will be after this time."""
 _STANDING = Point(0.0, 0.0)
@@ -73,6 +71,11 @@ def _lift_m_s(time_s: float, rise_s: float) -> float:
     """
     top_m = _GRAVITY_M_S2 * rise_s**2 / 2
     return top_m / time_s + _GRAVITY_M_S2 * time_s / 2
+
+
+def carried(place: Point, velocity_m_s: Point) -> Point:
+    """Returns the place from which a robot at rest reaches the same as a driving robot at `place`."""
+    return Point(place.x_m + _CARRY_S * velocity_m_s.x_m, place.y_m + _CARRY_S * velocity_m_s.y_m)
 
 
 def ball_after(ball: Ball, time_s: float, bodies: Bodies) -> Point:
@@ -143,7 +146,7 @@ class Course:
 
         If the ball outruns the robot, the meeting is where the ball will be at the end of the four seconds.
         """
-        own_x_m, own_y_m = place.x_m + _CARRY_S * velocity_m_s.x_m, place.y_m + _CARRY_S * velocity_m_s.y_m
+        own_x_m, own_y_m = carried(place, velocity_m_s)
         if self._resting:
             away_m = math.hypot(own_x_m - self._ball.place.x_m, own_y_m - self._ball.place.y_m)
             return Meeting(self._ball.place, reach_s(away_m - self._contact_m))

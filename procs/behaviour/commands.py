@@ -1,4 +1,4 @@
-"""What the skills can carry out: places where a robot or the ball can be, and speeds that robot or kicker reach."""
+"""Limits of the skills: places where a robot or the ball can be, and speeds that robot or kicker reach."""
 
 from lcmtypes.soccer import skill_command_t
 from procs.behaviour.ballistics import hardest_kick_m_s, kick_speed_m_s

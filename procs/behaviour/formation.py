@@ -11,9 +11,9 @@ from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import ahead, bearing_rad, between, clamp
 from procs.referee.restarts import State
 
-_OWN_SET_PIECE_M = 2.3
-_THEIR_SET_PIECE_M = 3.3
-_DROPPED_BALL_M = 1.3
+_OWN_SET_PIECE_M, _THEIR_SET_PIECE_M, _DROPPED_BALL_M = 2.3, 3.3, 1.3
+"""Distances from the ball of a set piece: those of the rules and 0.3 m more."""
+_TAKER_M = 0.75  # from the middle of a waiting taker to the ball
 _LAYOFF_M, _LAYOFF_RAD = 2.4, (0.55, 0.8, 1.1, 1.5)
 """Distance of the receiver from the ball of the own set piece, and its least angle off the straight way back."""
 _AREA_M = 0.35
@@ -107,7 +107,7 @@ def beside_shot(own: Point, place: Point, ball: Point, field: Field) -> Point:
 
 def taker_place(spot: Point, way_rad: float) -> Point:
     """Returns the waiting place of a set piece's taker: behind the ball, opposite to the direction of play."""
-    return ahead(spot, way_rad, -0.75)
+    return ahead(spot, way_rad, -_TAKER_M)
 
 
 def layoff_place(game: Game, field: Field) -> Point:

@@ -13,19 +13,16 @@ _MARGIN_S = 0.2
 """The robot stands there so long before the ball arrives."""
 _LEAST_M_S = 0.4
 """A slower ball is driven to."""
-_TURN_RAD_S = 4.0
-_TURN_S = 0.2  # to get into the turn and out of it
+_TURN_RAD_S, _TURN_S = 4.0, 0.2  # speed of the robot's turn, and time to get into it and out of it
 _FAST_M_S = 2.0
 """The robot does not drive towards a faster ball, which would bounce off."""
-_NEAR_LINE_M = 0.4
-_STEP_S = 0.1
-_HORIZON_S = 3.0
-_CARRY_S = 0.25  # the way of this time is what a driving robot gains over one at rest
+_NEAR_LINE_M = 0.4  # a robot that near to the ball's way nearly stands on it
+_STEP_S, _HORIZON_S = 0.1, 3.0  # meetings are looked for in steps, up to the horizon
 _WORTH_S = 0.5  # waiting for the ball may take so much longer than driving to it, because it does not bounce
 _AHEAD = 0.1  # cosine of the angle off the ball's way from which the robot would have to overtake the ball
 _KEPT_S = 0.3  # a meeting is kept until the robot is so late
-_SMOOTHING_S = 0.2
-_KICKED_M_S = 0.9
+_SMOOTHING_S = 0.2  # time constant of the mean velocity
+_KICKED_M_S = 0.9  # a velocity that changes by more is that of a kick
 
 
 class Stand(NamedTuple):
@@ -70,8 +67,7 @@ class Interception:
         self._left_s = max(0.0, self._left_s - duration_s)
         latest_s = ballistics.meet(view).time_s + _WORTH_S
         turning_s = abs(wrap_rad(heading_rad - robot.heading_rad)) / _TURN_RAD_S + _TURN_S
-        vx_m_s, vy_m_s = robot.velocity_m_s
-        start = Point(robot.place.x_m + _CARRY_S * vx_m_s, robot.place.y_m + _CARRY_S * vy_m_s)
+        start = ballistics.carried(robot.place, robot.velocity_m_s)
 
         def late_s(time_s: float) -> float:
             way_m = math.dist(start, _mouth_at(ball, time_s, way_rad, bodies))

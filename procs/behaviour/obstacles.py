@@ -13,10 +13,12 @@ from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import clamp, plausible
 from procs.model.robot import PLAYERS, Player
 
-_MARGIN_M = 0.12
+_MARGIN_M = 0.12  # room beside a robot that is driven around
 _GAP_M = 0.06  # between two robots that nearly touch
-_BALL_MARGIN_M = 0.1
-_FORESIGHT_S = 0.8
+_BALL_MARGIN_M = 0.1  # room beside a ball that is avoided
+_POST_MARGIN_M = 0.03  # room beside a goal post
+_BEFORE_GOAL_M = 0.1  # targets in or behind a goal move so far before the goal line
+_FORESIGHT_S = 0.8  # robots are avoided where they will be, at most so much later
 _MEETING_M_S = 3.0  # two robots that drive towards each other get closer about so fast
 _NEAR_M = 6.0  # further obstacles do not matter yet
 _PASSING_M = 0.1  # room beside a robot that is passed ...
@@ -36,7 +38,9 @@ def discs(model: world_model_t, field: Field, bodies: Bodies, avoid_robots: bool
     """Returns discs around near obstacles, at their positions in a moment."""
     own, robot_m = Point(model.x_m, model.y_m), bodies.robot_radius_m
     found = [
-        Disc(post, robot_m + field.post_diameter_m / 2 + 0.03) for side in SIDES for post in field.goal_posts(side)
+        Disc(post, robot_m + field.post_diameter_m / 2 + _POST_MARGIN_M)
+        for side in SIDES
+        for post in field.goal_posts(side)
     ]
     if avoid_robots:
         found += _robots([*model.mates, *_strangers(model)], own, robot_m)
@@ -52,7 +56,7 @@ def reachable(place: Point, field: Field, bodies: Bodies) -> Point:
     x_m = clamp(place.x_m, -field.half_length_m - field.border_m + off_m, field.half_length_m + field.border_m - off_m)
     y_m = clamp(place.y_m, -field.half_width_m - field.border_m + off_m, field.half_width_m + field.border_m - off_m)
     if _is_before_goal(y_m, field):
-        x_m = clamp(x_m, -field.half_length_m + 0.1, field.half_length_m - 0.1)
+        x_m = clamp(x_m, -field.half_length_m + _BEFORE_GOAL_M, field.half_length_m - _BEFORE_GOAL_M)
     return Point(x_m, y_m)
 
 

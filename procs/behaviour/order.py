@@ -12,7 +12,8 @@ class Order(NamedTuple):
     place: Point = Point(0.0, 0.0)
     heading_rad: float = 0.0
     intention: str = ""
+    """Purpose of the order in words, for people and team mates."""
     speed_m_s: float = 0.0
-    """Speed of a passed ball at its target; 0.0 leaves the speed to the skill."""
+    """Limit of the drive, or the speed of a passed ball at its target; 0.0 leaves the speed to the skill."""
     receiver: str = ""
     """Mate for whom a pass is meant."""

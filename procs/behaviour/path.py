@@ -7,10 +7,10 @@ from typing import NamedTuple
 from procs.model.field import Point
 from procs.model.geometry import ahead, bearing_rad, wrap_rad
 
-_GRAZE_RAD = 0.02
+_GRAZE_RAD = 0.02  # a way passes a disc by this angle more than its tangent
 _SWITCH_RAD = 0.35
 """The other side of an obstacle must save so much turning, or a robot in front of two equal ways would dither."""
-_CROWD_M = 0.02
+_CROWD_M = 0.02  # between a target and the core of the disc that covers it
 
 
 class Disc(NamedTuple):

@@ -13,7 +13,7 @@ from procs.model.robot import Player
 
 
 def is_field_player(model: world_model_t, robot: str, players: Mapping[str, Player]) -> bool:
-    """Returns whether a mate keeps the goal: the lowest number of those on the field.
+    """Returns whether the robot is a field player: a mate on the field has a lower number, and so keeps the goal.
 
     A robot that is alone may go everywhere.
     """
@@ -22,7 +22,7 @@ def is_field_player(model: world_model_t, robot: str, players: Mapping[str, Play
 
 
 class Permitted:
-    """Finds the place nearest to a target where a robot may stand; world frame, or attack frame."""
+    """Finds the place nearest to a target where a robot may stand; in the world frame or the attack frame."""
 
     def __init__(self, field: Field, bodies: Bodies) -> None:
         self._field, self._bodies = field, bodies
@@ -30,6 +30,6 @@ class Permitted:
         """The nets and areas that ways lead around."""
 
     def nearest(self, place: Point, field_player: bool) -> Point:
-        """Returns the place, or the nearest one that is permitted; a goal's is before its line."""
+        """Returns the place, or the nearest permitted one; for a place in a goal, that is before the goal line."""
         place = reachable(place, self._field, self._bodies)
         return self.goals.outside_areas(place) if field_player else place

@@ -18,7 +18,7 @@ from procs.behaviour.commands import mistake
 from procs.behaviour.game import Whose, frame_of, game_of
 from procs.behaviour.identity import team_of_player
 from procs.behaviour.permitted import Permitted, is_field_player
-from procs.behaviour.skills.book import SKILLS, Machine
+from procs.behaviour.skills.book import SKILLS, SkillRunner
 from procs.behaviour.skills.skill import Blind, Drive, Obstacle, Scene, Sight, Status, Step
 from procs.behaviour.view import view_of
 from procs.model.ball import BALL, BallModel
@@ -73,7 +73,7 @@ class Skiller(Component):
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
         self._frame = frame_of(self.game_state.value, self._team)
-        self._machine = Machine()
+        self._runner = SkillRunner()
         self._request: Request[skill_command_t] | None = None
         self._kick: Call | None = None
         self.config_changed()
@@ -90,7 +90,7 @@ class Skiller(Component):
         self._frame = frame_of(self.game_state.value, self._team)
         for request in self.skill:
             self._begin(request)
-        step = self._machine.step(self._scene())
+        step = self._runner.step(self._scene())
         self._answer(step)
         self._report(step)
         self._drive(step.drive)
@@ -116,7 +116,7 @@ class Skiller(Component):
             if self._request and not self._request.finished:
                 self._request.fail(f"replaced by command {request.sequence} of {request.sender}")
             self._request = request
-            self._machine.begin(command.skill)
+            self._runner.begin(command.skill)
 
     def _scene(self) -> Scene:
         command = self._request.value if self._request else skill_command_t()
@@ -187,7 +187,7 @@ class Skiller(Component):
         self.drive_target.write()
 
     def _drive_blind(self, blind: Blind | None) -> None:
-        """Sends the velocity of a robot that does not know its place, and once that there is none any more."""
+        """Sends the velocity of a robot that does not know its place, and its end once."""
         command = self.blind_drive.value
         if blind is None and not command.enabled:
             return

@@ -18,16 +18,16 @@ from procs.referee.restarts import State
 _AREA_M = 1.2  # a marking robot would stand in the penalty area with an opponent so near to it
 _MARK_M = 3.0  # a defender leaves its place for an opponent this near
 _HELD_M = 0.5  # an opponent this near to the ball has it
-_FAST_BALL_M_S = 1.2
+_FAST_BALL_M_S = 1.2  # the goalkeeper does not leave its line for a faster ball
 _KICK_OFF_RAD = 1.2  # nearly sideways: all mates are in the own half
 _BARRED_S = 4.0  # by then another robot has touched the ball of a set piece, or the game was interrupted
-_TOUCHED_M = 0.4
+_TOUCHED_M = 0.4  # a robot this near to the ball has touched it
 _BENCH_M = 3.0  # from the goal lines
 _PASSED_S = 1.0  # after a pass the passer leaves the ball to the receiver
-_PASSED_M_S = 1.5
+_PASSED_M_S = 1.5  # a ball that has left the robot faster has been passed
 _SETTLED_S = 0.14  # a ball that was caught so long ago does not bounce off when the robot turns
 _FUMBLED_M = 0.4  # the ball of a set piece that is so far from its spot has been taken
-_NEAR_M = 1.0
+_NEAR_M = 1.0  # the taker this near to such a ball has taken it itself
 _LEAVING_M, _GENTLE_M_S = 1.5, 1.0  # while a rival is so near to the ball, the taker comes so slowly
 _BESIDE_M = (0.2, 0.8)  # a ball laid less far from the spot lies on it; one further away is put back
 KEEPER_OUT_M = 2.3
@@ -265,7 +265,7 @@ def leave_field(view: View, field: Field) -> Order:
 
 
 def _nearest_defender(view: View, runner: Robot, limit_m: float) -> bool:
-    """Returns True if the own robot shall mark an opponent: within the limit, without a nearer defender."""
+    """Returns whether the own robot marks an opponent: it is within the limit, and no other defender is nearer."""
     own_m = math.dist(view.own.place, runner.place)
     defenders = [mate for mate in view.mates if mate.role == DEFENDER]
     return own_m < limit_m and all(own_m <= math.dist(mate.place, runner.place) for mate in defenders)

@@ -21,8 +21,9 @@ _HORIZON_S = 1.6
 _REACTION_S = 0.35
 """A robot that touches another already is judged by its velocity after this time."""
 _LATE_S = 0.4
-"""The robot evades one that gives way only if they would collide so soon."""
+"""The robot evades a mate that gives way only if they would collide so soon."""
 _SOONEST_S = 0.15
+"""An earlier collision costs no more."""
 _TOUCH_M_S = 0.4
 """Closing speed of a touch that does no harm."""
 _WEIGHT_S = 3.0
@@ -30,7 +31,9 @@ _WEIGHT_S = 3.0
 _GROWTH_M_S = 0.2
 """Further room for each second until robots meet: velocities are known roughly, and robots change them."""
 _LEAST_M_S = 1.0
+"""Velocities to choose from are at least so fast, so that a robot that stands can evade."""
 _FASTEST_M_S = 4.0
+"""Speed at which two robots approach each other at most."""
 _SPEED_SHARES = (1.0, 0.6, 0.25)
 _TURNS_RAD = (0.0, 0.35, -0.35, 0.8, -0.8, 1.4, -1.4, 2.2, -2.2, math.pi)
 _CHANGES = [(share * math.cos(turn), share * math.sin(turn)) for share in _SPEED_SHARES for turn in _TURNS_RAD]

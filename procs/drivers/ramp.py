@@ -20,7 +20,7 @@ class Ramp:
         omega_rad_s: float,
         angular_acceleration_rad_s2: float,
     ) -> None:
-        """Limits: speed, its growth, its decrease, turning speed and the change of that."""
+        """Begins at a standstill; the arguments are the limits, over the ground."""
         self.velocity = STANDSTILL
         self._speed_m_s = speed_m_s
         self._acceleration_m_s2 = acceleration_m_s2
@@ -29,7 +29,7 @@ class Ramp:
         self._angular_acceleration_rad_s2 = angular_acceleration_rad_s2
 
     def advance(self, wanted: Velocity, duration_s: float) -> Velocity:
-        """The velocity to command for the next `duration_s`. Non-finite values count as standstill."""
+        """Returns the velocity to command for the next `duration_s`. Non-finite values count as standstill."""
         if not all(map(math.isfinite, wanted)):
             wanted = STANDSTILL
         omega = min(self._omega_rad_s, max(-self._omega_rad_s, wanted.omega_rad_s))
@@ -51,7 +51,7 @@ class Ramp:
 
 
 def within_wheel_limit(velocity: Velocity, wheel_limit_m_s: float, wheel_distance_m: float) -> Velocity:
-    """The same motion, slower if need be, so that no wheel has to turn faster than it can."""
+    """Returns the same motion, slower if need be, so that no wheel has to turn faster than it can."""
     fastest_m_s = max(map(abs, wheels_of(velocity, wheel_distance_m)))
     scale = min(1.0, wheel_limit_m_s / fastest_m_s) if fastest_m_s else 1.0
     return Velocity(*(part * scale for part in velocity))

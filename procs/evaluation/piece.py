@@ -59,7 +59,7 @@ class Piece:
 
     @cached_property
     def players(self) -> dict[str, true_robot_t]:
-        """All robots that were ever on the field, by name."""
+        """Robots that were ever on the field, by name."""
         return {robot.name: robot for truth in self.truth.values() for robot in truth.robots}
 
     def team(self, name: str) -> str:

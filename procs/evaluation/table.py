@@ -16,43 +16,43 @@ _NEVER = 3.0  # events that were expected at most, with a probability of 95 %, i
 
 
 def rms(samples: Floats) -> float:
-    """Root of the mean of squared errors (n)."""
+    """Returns the root of the mean of squared errors (n)."""
     return float(np.sqrt(np.mean(samples))) if len(samples) else np.nan
 
 
 def root_99(samples: Floats) -> float:
-    """Root of the 99th percentile of squared errors (n)."""
+    """Returns the root of the 99th percentile of squared errors (n)."""
     return float(np.sqrt(np.quantile(samples, 0.99))) if len(samples) else np.nan
 
 
 def high_95(samples: Floats) -> float:
-    """95th percentile of samples (n)."""
+    """Returns the 95th percentile of samples (n)."""
     return float(np.quantile(samples, 0.95)) if len(samples) else np.nan
 
 
 def mean(samples: Floats) -> float:
-    """Mean of samples (n)."""
+    """Returns the mean of samples (n)."""
     return float(np.mean(samples)) if len(samples) else np.nan
 
 
 def median(samples: Floats) -> float:
-    """Median of samples (n), infinite ones among them."""
+    """Returns the median of samples (n), infinite ones among them."""
     return float(np.quantile(samples, 0.5, method="inverted_cdf")) if len(samples) else np.nan
 
 
 def ratio(samples: Floats) -> float:
-    """Sum of the first column by the sum of the second (n, 2)."""
+    """Returns the sum of the first column by the sum of the second (n, 2)."""
     below = samples[:, 1].sum() if len(samples) else 0.0
     return float(samples[:, 0].sum() / below) if below else np.nan
 
 
 def rate(samples: Floats) -> float:
-    """Number of events, the first column, by the time in which they happened, the second (n, 2)."""
+    """Returns the number of events, the first column, by the time in which they happened, the second (n, 2)."""
     return ratio(samples)
 
 
 def root_ratio(samples: Floats) -> float:
-    """Ratio of two root mean squares whose squares are the columns (n, 2)."""
+    """Returns the ratio of two root mean squares whose squares are the columns (n, 2)."""
     return float(np.sqrt(ratio(samples)))
 
 

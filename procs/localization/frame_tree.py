@@ -18,9 +18,9 @@ class Mounting(Config):
     x_m: float = 0.0
     """Forward of the parent's origin."""
     y_m: float = 0.0
-    """To the left of it."""
+    """To the left of the parent's origin."""
     z_m: float = 0.0
-    """Above it."""
+    """Above the parent's origin."""
     roll_rad: float = 0.0
     """About x."""
     pitch_rad: float = 0.0
@@ -66,7 +66,7 @@ class FrameTree(Component):
     transforms: Writes[transforms_t] = channel("transforms")
 
     def init(self) -> None:
-        """Cycles and frames with two parents are refused here."""
+        """Refuses cycles, and frames with two parents."""
         config, tree = self.config, TransformTree()
         tree.put(config.world, config.base, 0, Transform.of((0.0, 0.0, 0.0)))
         for name, mounting in config.mountings.items():

@@ -13,9 +13,9 @@ from procs.localization.line_map import LineMap
 from procs.localization.line_matching import LinePoints
 from procs.model.frames import Floats
 
-_CELL_M = 0.1
+_CELL_M = 0.1  # of the table
 _STEP = 4  # cells from one position of the grid to the next
-_ROBUST_M = 0.35  # wide enough that the nearest position of the grid still scores
+_ROBUST_M = 0.35  # distance from a line at which a point scores half: the nearest position of the grid still scores
 
 
 class GlobalSearch:

@@ -1,4 +1,4 @@
-"""Possible poses of a lost robot, followed until one explains the frames clearly best."""
+"""Possible poses of a lost robot, followed until a hypothesis explains the frames clearly best."""
 
 from dataclasses import dataclass, field
 
@@ -9,9 +9,8 @@ from procs.model.frames import Floats, rotation
 
 _MEMORY = 0.85  # of a hypothesis' mean score after ...
 _MEMORY_S = 0.08  # ... this time
-_MOST = 8
-_SAME_M = 0.5
-_SAME_RAD = 0.3
+_MOST = 8  # hypotheses
+_SAME_M, _SAME_RAD = 0.5, 0.3  # poses nearer to each other than both are the same
 _LEAST_FRAMES = 3  # for a decision
 _OLD_ENOUGH_S = 0.38  # age for a decision
 _CLEAR_LEAD = 0.15  # over the next best, for a decision as early as that
@@ -30,7 +29,7 @@ class Hypothesis:
 
 
 class Hypotheses:
-    """Followed by odometry, scored in each frame, joined when they meet; the best comes first."""
+    """Hypotheses of a lost robot: followed by odometry, scored in each frame, joined when they meet; best first."""
 
     def __init__(self) -> None:
         self.known: list[Hypothesis] = []
@@ -41,29 +40,29 @@ class Hypotheses:
 
     def predict(self, ahead_m: float, left_m: float, turn_rad: float) -> None:
         """Moves the hypotheses with the robot, by its odometry."""
-        for one in self.known:
-            way_m = rotation(float(one.pose[2]) + turn_rad / 2) @ (ahead_m, left_m)
-            one.pose = moved(one.pose, way_m, turn_rad)
+        for each in self.known:
+            way_m = rotation(float(each.pose[2]) + turn_rad / 2) @ (ahead_m, left_m)
+            each.pose = moved(each.pose, way_m, turn_rad)
 
     def starts(self, others: Floats) -> Floats:
         """Returns start poses (k, 3) for this frame's match: the known ones, then `others` (n, 3)."""
-        return np.vstack([one.pose for one in self.known] + [others])
+        return np.vstack([each.pose for each in self.known] + [others])
 
     def update(self, poses: Floats, scores: Floats, interval_s: float) -> None:
         """Takes the matched poses and scores of `starts`, and the time since the last frame."""
         count, memory = len(self.known), _MEMORY ** (interval_s / _MEMORY_S)
-        for one, pose, score in zip(self.known, poses, scores, strict=False):
-            one.pose = pose
-            one.score = memory * one.score + (1 - memory) * float(score)
-            one.frames += 1
-            one.age_s += interval_s
+        for each, pose, score in zip(self.known, poses, scores, strict=False):
+            each.pose = pose
+            each.score = memory * each.score + (1 - memory) * float(score)
+            each.frames += 1
+            each.age_s += interval_s
         found = [Hypothesis(pose, float(score)) for pose, score in zip(poses[count:], scores[count:], strict=True)]
-        oldest_first = sorted(self.known, key=lambda one: (-one.age_s, -one.frames, -one.score)) + found
+        oldest_first = sorted(self.known, key=lambda each: (-each.age_s, -each.frames, -each.score)) + found
         kept: list[Hypothesis] = []
-        for one in oldest_first:
-            if not any(_same(one.pose, other.pose) for other in kept):
-                kept.append(one)
-        self.known = sorted(kept, key=lambda one: -one.score)[:_MOST]
+        for each in oldest_first:
+            if not any(_same(each.pose, other.pose) for other in kept):
+                kept.append(each)
+        self.known = sorted(kept, key=lambda each: -each.score)[:_MOST]
 
     def decided(self, good_score: float) -> Hypothesis | None:
         """Returns the best hypothesis if it is good, old enough, and far enough ahead of the rest."""

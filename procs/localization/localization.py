@@ -24,12 +24,12 @@ from procs.vision.calibration import MirrorConfig
 
 _FASTEST_M_S = 8.0  # no robot drives faster
 _SHORT_S = 0.1  # for so long the velocity of the last tick tells the motion well enough
-_USUAL = MirrorConfig(size_px=360, view_angle_deg=86.0).mirror()  # the errors of localization are those of this one
-_AWAY_M = 2.0  # where mirrors are compared
+_USUAL = MirrorConfig(size_px=360, view_angle_deg=86.0).mirror()  # for which the expected errors are stated
+_AWAY_M = 2.0  # distance at which mirrors are compared
 
 
 class SeenPoints(NamedTuple):
-    """White points (n), robot frame, where they are now."""
+    """White points (n), in the robot frame of this tick, in metres."""
 
     x_m: Floats
     y_m: Floats
@@ -48,13 +48,13 @@ class LocalizationConfig(Config):
     start_x_m: float | None = Setting(None, frozen=True)
     """Start of the robot if it is known, world frame; needs the other two. It counts at the beginning of a run only."""
     start_y_m: float | None = Setting(None, frozen=True)
-    """See start_x_m."""
+    """Second part of the start, see start_x_m."""
     start_heading_rad: float | None = Setting(None, frozen=True)
-    """See start_x_m."""
+    """Third part of the start, see start_x_m."""
     realism: Realism = "realistic"
-    """Errors of the camera on which the pose's covariance counts: none, friendly, realistic or harsh."""
+    """Errors of the camera that the pose's covariance allows for: none, friendly, realistic or harsh."""
     mirror: MirrorConfig = MirrorConfig()
-    """Calibration of the camera: the less pixels it has, the larger the errors."""
+    """Calibration of the camera: the fewer pixels it has, the larger the errors."""
     reach_m: float = Setting(default=7.0, gt=0.5, le=12.0)
     """White points further away are not used."""
     points: int = Setting(default=100, ge=10)
@@ -68,7 +68,7 @@ class LocalizationConfig(Config):
 
     @field_validator("start_heading_rad")
     @classmethod
-    def _whole(cls, heading_rad: float | None, info: ValidationInfo) -> float | None:
+    def _start_is_whole(cls, heading_rad: float | None, info: ValidationInfo) -> float | None:
         """Refuses a part of a start, and one outside the walls."""
         if {"field", "start_x_m", "start_y_m"} <= info.data.keys():
             x_m, y_m, field = info.data["start_x_m"], info.data["start_y_m"], info.data["field"]
@@ -80,7 +80,7 @@ class LocalizationConfig(Config):
 
     @field_validator("good_score")
     @classmethod
-    def _better(cls, good_score: float, info: ValidationInfo) -> float:
+    def _above_lost_score(cls, good_score: float, info: ValidationInfo) -> float:
         """Refuses scores with which a robot is lost as soon as it is found."""
         lost_score = info.data.get("lost_score", 0.0)
         if good_score < lost_score:
@@ -107,7 +107,7 @@ class Localization(Component):
         global_search(line_map(config.field), config.reach_m)
 
     def init(self) -> None:
-        """Makes the table of the field's lines."""
+        """Begins at the start of the settings, or lost."""
         config = self.config
         start = (config.start_x_m, config.start_y_m, config.start_heading_rad)
         given = [value for value in start if value is not None]
@@ -115,14 +115,14 @@ class Localization(Component):
         self._yaw_rate_rad_s = 0.0
         self._turning_rad_s = 0.0  # mean since the last frame
         self._last_us = 0
-        self._localizer = self._made(np.array(given) if given else None)
+        self._localizer = self._new_localizer(np.array(given) if given else None)
         self._updated_us = -1
         self._recent = RecentMotion()
         self._captured_us = 0  # exposure of the newest points
 
     def loop(self) -> None:
         if self._updated_us < 0 and self.clock.tick > 1 + self.clock.every:
-            self._localizer = self._made(None)  # restarted: the robot has left its start
+            self._localizer = self._new_localizer(None)  # restarted: the robot has left its start
         knew = self._localizer.localized
         passed_s = self.clock.period_s if self._updated_us < 0 else self.clock.since_s(self._updated_us)
         updated_us, self._updated_us = self._updated_us, self.clock.now_us
@@ -140,7 +140,7 @@ class Localization(Component):
         pose.localized = self._localizer.localized
         self.pose.write()
 
-    def _made(self, start: Floats | None) -> SelfLocalizer:
+    def _new_localizer(self, start: Floats | None) -> SelfLocalizer:
         return SelfLocalizer(line_map(self.config.field), self._settings(), start)
 
     def config_changed(self) -> None:
@@ -178,7 +178,7 @@ class Localization(Component):
     def _as_seen_now(self, points: line_points_t) -> SeenPoints:
         """Returns the points in the frame of the robot that has driven on since their exposure.
 
-        Returns none if it is not known how far: wrong places of lines would be worse.
+        There are none if the way since then is not known: wrong places of lines would be worse.
         """
         seen_m = np.array((points.x_m, points.y_m)).T
         age_s = self.clock.since_s(points.capture_us) if points.capture_us else 0.0
@@ -197,7 +197,7 @@ class Localization(Component):
         return SeenPoints(seen_m[:, 0], seen_m[:, 1], moved)
 
     def _motion(self) -> Motion:
-        """Returns the way since the last frame by the wheels and the turn by the gyro, which slip does not affect."""
+        """Returns the way since the last tick by the wheels, and the turn by the gyro, which slip does not affect."""
         now = self.odometry.value
         sound = plausible(now.x_m, now.y_m, now.heading_rad, now.vx_m_s, now.vy_m_s)
         if not (self.odometry.refreshed and sound):

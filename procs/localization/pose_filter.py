@@ -9,9 +9,9 @@ from procs.model.frames import Floats, rotation, wrap
 
 _TICK_S = 0.05  # the errors below are those that add up in this time
 _PATH_ERROR = 0.1  # share of the way: wheel scale, encoder noise, slip
-_STANDING_M = 0.002
+_STANDING_M = 0.002  # error of the place of a robot that stands
 _TURN_ERROR = 0.03  # share of the turn
-_STANDING_RAD = 0.002
+_STANDING_RAD = 0.002  # error of the heading of a robot that stands
 _STRAIN_MEMORY_S = 0.17  # time constant of the mean innovation
 _NO_ERROR, _UNIT, _AXES = np.zeros(3), np.eye(3), np.arange(3)
 
@@ -23,7 +23,7 @@ class PoseFilter:
     """
 
     def __init__(self, pose: Floats, deviations: tuple[float, float, float]) -> None:
-        """`pose` is x, y (m), heading (rad); `deviations` their standard deviations."""
+        """Begins at a pose, x, y (m), heading (rad), with these standard deviations (m, m, rad)."""
         self.pose = pose.astype(np.float64)
         self.covariance: Floats = np.diag(np.square(deviations))
         """(3, 3) of x, y, heading."""
@@ -67,5 +67,5 @@ def motion_errors(way_m: float, turn_rad: float, duration_s: float) -> tuple[flo
 
 
 def moved(pose: Floats, way_m: Floats, turn_rad: float) -> Floats:
-    """The pose (3) shifted by a way (2) in the world frame and turned."""
+    """Returns the pose (3) shifted by a way (2) in the world frame and turned."""
     return np.array((pose[0] + way_m[0], pose[1] + way_m[1], wrap(float(pose[2]) + turn_rad)))

@@ -1,4 +1,4 @@
-"""The way of the last seconds, for what was seen before the last tick."""
+"""Way of a robot in the last 1.5 s, for points that were seen some ticks ago."""
 
 from collections import deque
 from typing import NamedTuple
@@ -9,14 +9,14 @@ from procs.localization.self_localizer import Motion
 from procs.model.frames import Floats, rotation
 
 MEMORY_US = 1_500_000
-"""Motions before that are forgotten; no camera takes longer from the exposure to its points."""
+"""Older motions are forgotten; no camera takes longer from the exposure to its points."""
 
 
 class Way(NamedTuple):
     """Motion since an exposure, in the robot's frame at the exposure."""
 
     shift_m: Floats
-    """(2)."""
+    """(2): ahead and left."""
     turn_rad: float
 
 
@@ -33,7 +33,7 @@ class RecentMotion:
             self._steps.popleft()
 
     def since(self, time_us: int) -> Way | None:
-        """Returns the way from a time until now; None if that time is before everything known."""
+        """Returns the way from a time until now; None if the motion of that time is not known."""
         if not self._steps or time_us < self._steps[0][0]:
             return None
         shift_m, turn_rad = np.zeros(2), 0.0

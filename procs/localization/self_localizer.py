@@ -21,8 +21,9 @@ from procs.localization.pose_filter import PoseFilter
 from procs.model.expected_errors import EXPECTED, ExpectedErrors
 from procs.model.frames import Floats, wrap
 
-_LOST_DEVIATIONS = (5.0, 5.0, 0.3)  # m, m, rad
-_FOUND_DEVIATIONS = (0.1, 0.1, 0.05)
+_LOST_DEVIATIONS = (5.0, 5.0, 0.3)  # m, m, rad: of the pose of a lost robot
+_FOUND_DEVIATIONS = (0.1, 0.1, 0.05)  # m, m, rad: of a pose that has just been found
+_START_DEVIATIONS = (0.3, 0.3, 0.1)  # m, m, rad: of a start that the settings state
 _COMPASS_ERRORS_RAD = (0.0, -0.12, 0.12, -0.24, 0.24)  # tried one after the other while searching
 _COMPASS_MEMORY_S = 25.0  # time constant of the compass offset: so slow that a carried robot learns little wrong
 _COMPASS_FORGETS_S = 5.0  # time constant with which the offset fades while the robot searches
@@ -34,16 +35,25 @@ class LocalizerSettings:
     """Settings of a self-localizer."""
 
     reach_m: float = 7.0
+    """Points further away are not used."""
     points: int = 100
+    """Most points of a frame that are used."""
     least_points: int = 8
+    """Frames with fewer points are not used."""
     search_points: int = 40
+    """Most points for a search of the whole field."""
     search_period_s: float = 0.5
     """From one search of the whole field to the next while localized."""
     lost_score: float = 0.4
+    """The pose is given up when the mean score falls below this; 1 is a perfect fit."""
     good_score: float = 0.5
+    """A place is believed only with at least this score."""
     rival_lead: float = 0.12
+    """Lead of another place over the pose, in score, with which it counts as a rival."""
     rivals: int = 3
+    """The pose is given up after so many searches in a row with a rival."""
     compass_limit_rad: float = 0.6
+    """A heading that differs more from the compass, without its offset, is wrong."""
     correlation: float = 4.0
     """Points that share one error: factor of the match's covariance over that of independent points."""
     errors: ExpectedErrors = EXPECTED["realistic"]
@@ -75,12 +85,12 @@ class SelfLocalizer:
         """Recent mean score of the matches: 1 if all points lie on lines."""
         self.compass_offset_rad = 0.0
         """Compass reading minus heading, learnt while localized."""
-        self._rivals = 0
-        self._seeks = 0
+        self._rivals = 0  # searches in a row with a better place
+        self._seeks = 0  # frames in which the lost robot has searched
         self._since_frame_s = 0.0
         self._since_search_s = 0.0
         if start is not None:
-            self._found(start, (0.3, 0.3, 0.1), settings.good_score)
+            self._found(start, _START_DEVIATIONS, settings.good_score)
 
     @property
     def pose(self) -> Floats:
@@ -135,6 +145,7 @@ class SelfLocalizer:
             self._seek(points, compass_rad - self.compass_offset_rad, interval_s)
 
     def _track(self, points: LinePoints, compass_rad: float | None, shared: Floats, interval_s: float) -> None:
+        """Corrects the pose by the points; gives it up if points or compass contradict it."""
         settings = self._settings
         found = match(self._lines, points, self.pose[None])
         self.score += _share(interval_s, _SCORE_MEMORY_S) * (float(found.scores[0]) - self.score)
@@ -154,6 +165,7 @@ class SelfLocalizer:
             self._look_for_rivals(points, heading_rad)
 
     def _look_for_rivals(self, points: LinePoints, heading_rad: float) -> None:
+        """Searches the whole field; gives the pose up if another place was clearly better several times in a row."""
         thin = points.thinned(self._settings.search_points)
         others = self._search.best(thin, np.array([heading_rad]), 3)
         found = match(self._lines, thin, np.vstack((self.pose, others)))
@@ -163,6 +175,7 @@ class SelfLocalizer:
             self._lose()
 
     def _seek(self, points: LinePoints, heading_rad: float, interval_s: float) -> None:
+        """Follows the hypotheses of a lost robot by the points and its compass, until one of them is ahead."""
         self.compass_offset_rad *= 1.0 - _share(interval_s, _COMPASS_FORGETS_S)
         thin = points.thinned(self._settings.search_points)
         turn_rad = _COMPASS_ERRORS_RAD[self._seeks % len(_COMPASS_ERRORS_RAD)]

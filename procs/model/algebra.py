@@ -7,7 +7,7 @@ Floats = NDArray[np.float64]
 
 
 def product(rows: Floats, matrix: Floats) -> Floats:
-    """`rows @ matrix` for rows (n, k) and a small matrix (k, m)."""
+    """Returns `rows @ matrix` for rows (n, k) and a small matrix (k, m)."""
     made: Floats = rows[:, :1] * matrix[0]
     for k in range(1, len(matrix)):
         made += rows[:, k : k + 1] * matrix[k]
@@ -15,11 +15,11 @@ def product(rows: Floats, matrix: Floats) -> Floats:
 
 
 def weighted_mean(values: Floats, weights: Floats) -> float:
-    """Mean of values (n) by weights (n) that do not sum up to zero."""
+    """Returns the mean of values (n) by weights (n) that do not sum up to zero."""
     return float((values * weights).sum() / weights.sum())
 
 
 def median(values: Floats) -> float:
-    """Median of values (n); NumPy's own imports another part of it, and takes four times as long for few values."""
+    """Returns the median of values (n); that of NumPy takes four times as long for few values."""
     ordered, half = np.sort(values), len(values) // 2
     return float(ordered[half] if len(values) % 2 else (ordered[half - 1] + ordered[half]) / 2)

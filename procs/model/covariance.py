@@ -1,4 +1,4 @@
-"""Covariances of measurements: what a message states may not be one at all."""
+"""Covariances of measurements: a message may state a matrix that is no covariance."""
 
 from collections.abc import Sequence
 

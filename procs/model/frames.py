@@ -16,7 +16,7 @@ def wrap(angle_rad: float) -> float:
 
 
 def rotation(angle_rad: float) -> Floats:
-    """Matrix (2, 2) that turns vectors counter-clockwise."""
+    """Returns the matrix (2, 2) that turns vectors counter-clockwise."""
     cosine, sine = math.cos(angle_rad), math.sin(angle_rad)
     return np.array([[cosine, -sine], [sine, cosine]])
 
@@ -24,7 +24,7 @@ def rotation(angle_rad: float) -> Floats:
 def to_world(
     pose: Floats, pose_covariance: Floats, points_m: Floats, covariances_m2: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Points (n, 2) that a robot sees, taken to the world frame with their covariances (n, 2, 2) in two parts.
+    """Takes points (n, 2) that a robot sees to the world frame, with their covariances (n, 2, 2) in two parts.
 
     The first part comes from the sight itself and is new in each frame, the second from the robot's own pose,
     whose error stays for a while and is shared by everything that the robot sees.

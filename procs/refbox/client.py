@@ -14,7 +14,8 @@ from procs.refbox.protocol import PORT, Command, Host, ProtocolError, Stream, de
 
 _IGNORED = frozenset({"WELCOME", "IS_ALIVE", "REPAIR_END", "TESTMODE_ON", "TESTMODE_OFF"})
 _OTHER_NAMES = {"GAMEOVER": "END_GAME", "GAME_OVER": "END_GAME"}
-_TIMEOUT_S = 1.0
+_TIMEOUT_S = 1.0  # within which the referee answers a command
+_HEARD = 65_536  # bytes taken from the RefBox in a tick
 _UNDER_WAY = frozenset({errno.EINPROGRESS, errno.EALREADY, errno.EWOULDBLOCK, errno.EINTR})
 
 
@@ -22,9 +23,9 @@ class ClientConfig(Config):
     """Address of the RefBox."""
 
     host: Host = "127.0.0.1"
-    """Its address."""
+    """Name or address of the RefBox."""
     port: int = Field(default=PORT, ge=1, le=65_535)
-    """Its TCP port."""
+    """TCP port of the RefBox."""
     retry_s: PositiveFloat = 1.0
     """A RefBox that cannot be reached is tried again after this time; only a new reason is logged again."""
     connect_s: PositiveFloat = 1.0
@@ -106,10 +107,10 @@ class RefBoxClient(Component):
         if self._connection is None:
             return []
         try:
-            data = self._connection.recv(65_536)
+            data = self._connection.recv(_HEARD)
             if data:
                 return list(self._stream.feed(data))
-            reason = "it has ended"
+            reason = "it closed the connection"
         except BlockingIOError:
             return []
         except (OSError, ProtocolError) as error:
@@ -120,7 +121,7 @@ class RefBoxClient(Component):
         return []
 
     def _hand_on(self, message: bytes) -> str:
-        """Hands a command on; returns why a message is none, or an empty text."""
+        """Hands a command on; returns why the message is no command, or an empty text."""
         try:
             command = decode(message, self.config.addresses)
         except ProtocolError as error:

@@ -17,12 +17,10 @@ _SET_PIECES = {
     game_state_t.FREE_KICK: "FREEKICK",
     game_state_t.GOAL_KICK: "GOALKICK",
 }
-_GOALS_MAX = 99
-"""A RefBox counts no further."""
+_GOALS_MAX = 99  # a RefBox counts no further
 _HALVES = {1: "FIRST_HALF", 2: "SECOND_HALF", 3: "FIRST_HALF_OVERTIME", 4: "SECOND_HALF_OVERTIME"}
 _BREAKS = (game_state_t.HALF_TIME, game_state_t.FROZEN)
 _CARDS = {game_event_t.YELLOW: "YELLOW_CARD", game_event_t.DOUBLE_YELLOW: "DOUBLE_YELLOW", game_event_t.RED: "RED_CARD"}
-
 _AWAY = (game_event_t.DOUBLE_YELLOW, game_event_t.RED)
 
 
@@ -66,7 +64,7 @@ def _robots(
     number: Callable[[str], int],
     team: Callable[[str], str],
 ) -> list[Command]:
-    """Returns the goals, the cards, and who left the field, between two states."""
+    """Returns the goals, the cards, and the robots that left the field, between two states."""
     newer = events[before.decisions : now.decisions]
     causes = {robot: _cause(robot, newer) for robot in now.sent_off}
     off = [

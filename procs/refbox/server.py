@@ -11,7 +11,7 @@ from procs.model.robot import PLAYERS, Players, number_of, team_of
 from procs.refbox.news import news
 from procs.refbox.protocol import PORT, Command, Host, encode
 
-_BACKLOG = 16
+_BACKLOG = 16  # base stations that may wait to be let in
 _HEARD = 65_536  # bytes taken from a base station in a tick, and dropped
 
 
@@ -21,7 +21,7 @@ class ServerConfig(Config):
     host: Host = Field("127.0.0.1", frozen=True)
     """Address on which it listens; 0.0.0.0 lets other machines in."""
     port: int = Field(default=PORT, ge=0, le=65_535, frozen=True)
-    """TCP port; 0: one that is free, named in the log."""
+    """TCP port; 0: a free port, which the log names."""
     stations: int = Field(default=32, ge=1, le=500)
     """Most base stations at a time; further ones are turned away."""
     addresses: dict[str, str] = {"cyan": "224.16.32.1", "magenta": "224.16.32.2"}
@@ -33,10 +33,10 @@ class ServerConfig(Config):
 class RefBoxServer(Component):
     """Sends each base station what led to the state of the game, then every decision in the tick in which it is made.
 
-    The former is the half, the goals, the cards, the robots off the field, and the break or the set piece at hand.
+    First come the half, the goals, the cards, the robots off the field, and the break or the set piece at hand.
 
-    What base stations say is dropped. One that leaves, or does not read what it is sent, is cut off; no base station
-    can hold the game up.
+    Messages of base stations are dropped. A base station that leaves, or does not read what it is sent, is cut off: no
+    base station can hold the game up.
     """
 
     stage = "post_loop"
@@ -48,7 +48,7 @@ class RefBoxServer(Component):
     match_history: Reads[match_history_t] = channel("world/match_history")
 
     def init(self) -> None:
-        """Listens.
+        """Begins to listen.
 
         Raises:
             OSError: the address cannot be used.
@@ -89,7 +89,7 @@ class RefBoxServer(Component):
         return player.team if player else team_of(robot)
 
     def _hear(self) -> None:
-        """Drops what base stations say, and notices those that have left."""
+        """Drops the messages of base stations, and cuts off those that have left."""
         for station in list(self._stations):
             try:
                 left = not station.recv(_HEARD)

@@ -53,7 +53,7 @@ def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: 
 def _set_piece(whistle: Whistle, sight: Sight, name: str, team: Team) -> str:
     state, half = SET_PIECES[name], begun_by(whistle, name)
     if not team:
-        return f"a {state.name.lower().replace('_', ' ')} needs a team: cyan or magenta"
+        return f"a {state.words} needs a team: cyan or magenta"
     if half:
         whistle.begin_half(half, "by hand", team)
         return ""

@@ -132,7 +132,7 @@ class Referee(Component):
             return f"{call.card.name.lower().replace('_', ' ')} card for {self._names.namespace(call.robot)}, {when}"
         if call.reason in OFF_FIELD:
             return f"{call.reason}{f' of {self._names.namespace(call.robot)}' if call.robot else ''}, {when}"
-        what = "final whistle" if call.state is State.FROZEN else call.state.name.lower().replace("_", " ")
+        what = "final whistle" if call.state is State.FROZEN else call.state.words
         whose = f" for {call.team.name.lower()}" if call.team else ""
         why = f" ({', '.join(filter(None, (call.reason, self._names.namespace(call.robot))))})" if call.reason else ""
         return f"{what}{whose}{why}, {score}, {when}"

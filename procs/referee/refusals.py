@@ -62,11 +62,9 @@ def _why_not_between_penalties(whistle: Whistle, name: str, team: Team) -> str:
     if name == "drop_ball" or (name in SET_PIECES and name != "penalty"):
         return f"no {_words(name)} while penalties decide the match; penalty team={whose} repeats the one at hand"
     if name == "goal" and team is shooter.other:
-        return f"{team.name.lower()} cannot score: the penalty is one of {whose}"
+        return f"{team.name.lower()} cannot score: the penalty is that of {whose}"
     return ""
 
 
 def _words(name: str) -> str:
-    return {"drop_ball": "dropped ball", "half_time": "half time"}.get(name) or (
-        SET_PIECES[name].name.lower().replace("_", " ")
-    )
+    return (SET_PIECES | {"drop_ball": State.DROP_BALL, "half_time": State.HALF_TIME})[name].words

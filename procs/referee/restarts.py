@@ -23,6 +23,14 @@ class State(IntEnum):
     GOAL_KICK = 8
     HALF_TIME = 9
 
+    @property
+    def words(self) -> str:
+        """Name of the state for people, such as `kick-off` or `corner kick`."""
+        return _WORDS.get(self, self.name.lower().replace("_", " "))
+
+
+_WORDS = {State.KICK_OFF: "kick-off", State.DROP_BALL: "dropped ball", State.THROW_IN: "throw-in"}
+
 
 class Restart(NamedTuple):
     """One set piece."""

@@ -17,7 +17,7 @@ class Stretch:
     """Touches, fouls and rests of the ball since a set piece began."""
 
     def __init__(self, piece: State, ball: Point, excused: frozenset[str] = frozenset()) -> None:
-        """`excused` are the robots that the start found misplaced."""
+        """Begins with the ball at a place; robots that the start found misplaced are `excused`."""
         self.piece = piece
         """Set piece at the beginning; PLAY if no robot took it in its time."""
         self.excused = excused
@@ -37,7 +37,7 @@ class Stretch:
         return Scene(duration_s, sight, rules, ends, self.touches, self._carrier)
 
     def rolled(self, ball: Point, rules: Rules) -> bool:
-        """Returns whether the ball has rolled without a touch far enough to be set free.
+        """Returns whether the ball has rolled without a touch far enough to be set free, and remembers it.
 
         The taker of a set piece may then not touch it again.
         """
@@ -53,7 +53,7 @@ class Stretch:
         self._resting_at, self._resting_s = ball, 0.0
 
     def fouls(self, scene: Scene) -> tuple[Foul | None, Foul | None]:
-        """Returns the foul that was committed in the tick, and the one that is now punished."""
+        """Returns the foul that was committed in the tick, and the foul that is punished now."""
         foul, lost = self._book.watch(scene), self._advantage.lost(scene)
         if foul is None or self._advantage.pends(foul):
             return None, lost

@@ -280,6 +280,6 @@ class Simulator(Component):
 
 
 def _command(drive: kicker_drive_t) -> KickerCommand:
-    """Returns the command of a driver; an elevation that cannot be is none."""
+    """Returns the command of a driver; an impossible elevation counts as 0."""
     elevation_rad = drive.elevation_rad if 0.0 <= drive.elevation_rad <= math.pi / 3 else 0.0
     return KickerCommand(drive.kick_id, drive.kick_m_s, drive.dribble, elevation_rad)

@@ -8,15 +8,15 @@ from lcmtypes.soccer import world_model_t
 from procs.view.canvas import Canvas
 from procs.view.palette import TEAM_COLOURS, UNKNOWN_TEAM
 
-_SIGMAS = 2.0
-_LIMIT_M = 3.0
+_SIGMAS, _LIMIT_M = 2.0, 3.0  # half axes of an ellipse in standard deviations, and their longest
+_RING_M, _LINE_M = 0.28, 0.02  # radius of the ring at the believed pose, and width of its line
 
 
 def draw_beliefs(canvas: Canvas, team: str, belief: world_model_t) -> None:
     """Draws, in the colour of a team, a ring at the believed pose and an ellipse of two deviations around the ball."""
     colour = TEAM_COLOURS.get(team, UNKNOWN_TEAM)
     if belief.localized:
-        canvas.ring((belief.x_m, belief.y_m), 0.28, 0.02, colour)
+        canvas.ring((belief.x_m, belief.y_m), _RING_M, _LINE_M, colour)
     covariance = np.array(belief.ball.covariance)[:2, :2]
     if belief.ball.known and np.isfinite(covariance).all():
         variances, axes = np.linalg.eigh((covariance + covariance.T) / 2)

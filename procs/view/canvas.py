@@ -15,7 +15,7 @@ Place = tuple[float, float]
 """x and y in metres, world frame."""
 
 _SHIFT = 4  # OpenCV takes coordinates in sixteenths of a pixel
-_FAR_PX = 20_000.0
+_FAR_PX = 20_000.0  # coordinates are limited to this
 _FONT = cv2.FONT_HERSHEY_DUPLEX
 _FONT_HEIGHT_PX = 21  # of a capital letter at scale 1
 
@@ -63,7 +63,7 @@ class Canvas:
         cv2.ellipse(self.picture, self._pixel(place), axes, -angle_deg, 0, 360, colour, 1, cv2.LINE_AA, _SHIFT)
 
     def text(self, words: str, place: Place, height_m: float, colour: Colour) -> None:
-        """Words with their middle at `place`; `height_m` is that of a capital letter."""
+        """Writes words with their middle at `place`; `height_m` is that of a capital letter."""
         x, y = self._pixel(place)
         middle = (x / (1 << _SHIFT), y / (1 << _SHIFT))
         write(self.picture, words, middle, height_m * self.px_per_m, colour)
@@ -86,7 +86,7 @@ class Canvas:
 def write(
     picture: Picture, words: str, middle_px: tuple[float, float], height_px: float, colour: Colour, align: float = 0.5
 ) -> None:
-    """Writes words into a picture; `align` is the part of their length that lies left of `middle_px`."""
+    """Writes words into a picture; `align` is the share of their length that lies left of `middle_px`."""
     scale = height_px / _FONT_HEIGHT_PX
     thickness = max(1, round(scale * 1.4))
     (width_px, _), _ = cv2.getTextSize(words, _FONT, scale, thickness)

@@ -16,7 +16,7 @@ _ARC_STEPS = 48
 
 
 def draw_ground(canvas: Canvas, field: Field) -> None:
-    """Draws everything that does not move."""
+    """Draws grass, lines, marks and goals over the whole picture."""
     x_m, y_m = field.half_length_m, field.half_width_m
     canvas.picture[:] = SURROUND
     stripe_m = field.length_m / _STRIPES

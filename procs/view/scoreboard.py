@@ -1,4 +1,4 @@
-"""The score in words: one line for a running match, a few for one that has ended."""
+"""The score in words: one line for a running match, a few lines for a match that has ended."""
 
 from collections import Counter
 from collections.abc import Callable
@@ -7,6 +7,7 @@ from typing import Any
 from lcmtypes.soccer import game_event_t, game_state_t, match_history_t
 from procs.model.field import field_of
 from procs.referee.reasons import OFF_FIELD
+from procs.referee.restarts import State
 from procs.view.field_drawing import field_drawing
 
 Newest = Callable[[str], Any]
@@ -19,18 +20,8 @@ MEASURES = "world/field"
 CHANNELS = (GAME_STATE, HISTORY, TRUTH, MEASURES)
 """Channels whose messages the display passes to this module."""
 
-STATES = {
-    game_state_t.FROZEN: "frozen",
-    game_state_t.PLAY: "play",
-    game_state_t.KICK_OFF: "kick-off",
-    game_state_t.DROP_BALL: "dropped ball",
-    game_state_t.PENALTY: "penalty",
-    game_state_t.CORNER_KICK: "corner kick",
-    game_state_t.THROW_IN: "throw-in",
-    game_state_t.FREE_KICK: "free kick",
-    game_state_t.GOAL_KICK: "goal kick",
-    game_state_t.HALF_TIME: "half time",
-}
+STATES = {int(state): state.words for state in State}
+"""Words for the states of `game_state_t`."""
 CARDS = {game_event_t.YELLOW: "yellow", game_event_t.DOUBLE_YELLOW: "double yellow", game_event_t.RED: "red"}
 TEAMS = {game_state_t.TEAM_CYAN: "cyan", game_state_t.TEAM_MAGENTA: "magenta"}
 
@@ -50,7 +41,7 @@ def phase(state: game_state_t) -> str:
 
 
 def play_time(time_s: float) -> str:
-    """Minutes and seconds: `03:12`."""
+    """Returns minutes and seconds: `03:12`."""
     minutes, seconds = divmod(int(time_s), 60)
     return f"{minutes:02d}:{seconds:02d}"
 

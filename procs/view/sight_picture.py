@@ -1,6 +1,6 @@
-"""A camera's picture with what the detectors found in it: `python -m procs.view.sight_picture FILE`.
+"""A camera's picture with the findings of the detectors: `python -m procs.view.sight_picture FILE`.
 
-Without the web console, which draws the same over live pictures.
+The web console draws the same over live pictures.
 """
 
 import argparse
@@ -27,7 +27,7 @@ T = TypeVar("T", ball_percept_t, obstacle_percepts_t, line_points_t)
 BALL: Colour = (88, 238, 255)
 OBSTACLE: Colour = (129, 64, 255)
 LINE: Colour = (255, 229, 0)
-"""Colours of what was found, blue, green, red."""
+"""Colours of the findings, as blue, green, red."""
 _SHIFT = 4  # OpenCV takes coordinates in sixteenths of a pixel
 _STEPS = 32
 _ROBOT = "cyan3"
@@ -46,7 +46,7 @@ def drawn(
     scale: int = 2,
     ball_radius_m: float = RADIUS_M,
 ) -> Picture:
-    """Returns the picture of a camera (size, size, 3), `scale` times larger, with what was found in it.
+    """Returns the picture of a camera (size, size, 3), `scale` times larger, with the findings in it.
 
     Points on lines are dots, the feet of robots and the ball's outline are rings.
     """

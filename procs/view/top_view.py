@@ -30,8 +30,8 @@ TEXT: Colour = (245, 245, 245)
 TRUTH = "world/ground_truth"
 MEASURES = "world/field"
 
-_TAIL_S = 0.12
-_MARKER = 0.64  # radius of the team marker, as a part of the robot's
+_TAIL_S = 0.12  # the ball's tail shows its way of this time
+_MARKER = 0.64  # radius of the team marker, as a share of the robot's
 
 
 class TopView:
@@ -44,7 +44,7 @@ class TopView:
         robot: RobotModel = ROBOT,
         ball: BallModel = BALL_MODEL,
     ) -> None:
-        """The height follows from the field; both are even, as video encoders require."""
+        """Takes the height from the field; width and height are even, as video encoders require."""
         self._radius_m, self._ball_radius_m = robot.radius_m, ball.radius_m
         self._mouth_rad = math.radians(robot.mouth_half_angle_deg)
         self._field = field or Field()
@@ -64,7 +64,7 @@ class TopView:
         state: game_state_t | None = None,
         beliefs: Mapping[str, world_model_t] | None = None,
     ) -> Picture:
-        """A picture of the world; `beliefs` are the world models of some robots, by namespace."""
+        """Returns a picture of the world; `beliefs` are the world models of some robots, by namespace."""
         canvas = self._canvas.on(self._canvas.picture.copy())
         teams = {robot.name: team_in(robot) for robot in truth.robots}
         for name, belief in sorted((beliefs or {}).items()):

@@ -17,7 +17,7 @@ from procs.vision.mirror import Mirror
 from procs.vision.uncertainty import ground_covariance, sphere_covariance
 
 _STEP_PX = 2  # the first search looks at every second pixel of every second row
-_CANDIDATES = 4
+_CANDIDATES = 4  # largest blobs, which are looked at
 _LEAST_SOLID = 0.5  # of a blob's area must be of the ball's colour; the rest is its rim
 _MOST_SPREAD = 1.6  # mean square distance of a blob's pixels from its middle, compared with a disc's
 _FAINT = 0.15  # pixels covered by the ball to a smaller part than this count as noise
@@ -35,19 +35,19 @@ class BallSighting:
     z_m: float
     """Height of the ball's lowest point; 0 for a ball on the ground."""
     covariance_m2: Floats
-    """2 x 2, of x and y: one standard deviation is what the measured errors are at that distance."""
+    """2 x 2, of x and y in the robot frame."""
     confidence: float
     """0..1: how well the blob's size fits a ball that lies there; smaller for a ball in the air."""
 
 
 def most_fit(radius_px: float) -> float:
-    """Returns the largest area of a ball on the ground, by that which its radius in the picture there makes likely."""
+    """Returns the largest plausible area of a ball on the ground, as a multiple of the area that its radius gives."""
     return 1.08 + 0.4 / radius_px
 
 
 @dataclass(frozen=True)
 class _Blob:
-    """Something of the ball's colour: centre, area, and mean square distance of its pixels from the centre."""
+    """An area of the ball's colour: centre, size, and mean square distance of its pixels from the centre."""
 
     column: float
     row: float
@@ -67,14 +67,14 @@ class BallFinder:
     least_fit: float = 0.4
     """Least ratio of the areas of blob and ball, of which robots may hide a part; smaller blobs are not balls."""
     farthest_m: float = 8.0
-    """Beyond that nothing is taken for a ball."""
+    """Largest distance of a ball."""
 
     def find(self, pixels: Picture) -> BallSighting | None:
         """Returns the likeliest ball in a picture, height x width x 3, or None."""
         return next(iter(self.find_all(pixels)), None)
 
     def find_all(self, pixels: Picture) -> list[BallSighting]:
-        """Returns all that may be the ball in a picture, height x width x 3, the likelier the earlier."""
+        """Returns the candidates for the ball in a picture, height x width x 3, the likeliest first."""
         coarse = cv2.resize(pixels, None, fx=1 / _STEP_PX, fy=1 / _STEP_PX, interpolation=cv2.INTER_NEAREST)
         mask = self.colour.mask(to_hsv(np.asarray(coarse, np.uint8))).view(np.uint8)
         left, top, width, height = cv2.boundingRect(mask)
@@ -117,7 +117,7 @@ class BallFinder:
         return self._in_the_air(blob)
 
     def _on_ground(self, blob: _Blob, x_m: float, y_m: float, expected_px: float, fit: float) -> BallSighting | None:
-        """Returns the ball on the ground whose expected radius and area a blob fits so well, if it does."""
+        """Returns the ball on the ground at a blob; None if distance, size or shape do not fit."""
         confidence = min(fit, 1 / fit)
         if math.hypot(x_m, y_m) > self.farthest_m or confidence < self.least_fit or not _is_round(blob, expected_px):
             return None
@@ -126,7 +126,7 @@ class BallFinder:
         return BallSighting(x_m, y_m, 0.0, ground_covariance(self.mirror, x_m, y_m, deviation_px), confidence)
 
     def _in_the_air(self, blob: _Blob) -> BallSighting | None:
-        """Returns the ball in the air that has the size of a blob."""
+        """Returns the ball in the air that has the size of a blob; None if place or shape do not fit."""
         radius_px = math.sqrt(blob.area_px / math.pi)
         if not self.mirror.shows_all(blob.column, blob.row, radius_px):
             return None

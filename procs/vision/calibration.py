@@ -11,7 +11,7 @@ from procs.vision.mirror import Mirror
 
 
 class MirrorConfig(Config):
-    """The mirror as it was calibrated; the camera and both detectors of a robot use the same."""
+    """Calibration of the mirror, which the camera and both detectors of a robot share."""
 
     size_px: int = Field(default=400, ge=64, le=1600)
     """Height and width of the picture."""

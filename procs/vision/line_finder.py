@@ -21,12 +21,14 @@ class LineFinder:
     white: ColourRange
     widest_m: float = 0.4
     """A longer way over white is not a crossing of a line."""
-
     narrowest_m: float = 0.05
-    """A shorter one is a speck, unless pixels are too coarse there to tell."""
+    """A shorter way over white is a speck, unless pixels are too coarse there to tell."""
 
     def find(self, hsv: Picture, scan: Scan) -> Floats:
-        """Line points (n, 2) in the robot frame, line by line, from a scan (lines, samples, 3) in HSV."""
+        """Returns the points (n, 2) on white lines, robot frame, from a scan (lines, samples, 3) in HSV.
+
+        They come scan line by scan line.
+        """
         green = self.green.mask(hsv)
         lines, starts, ends = runs(self.white.mask(hsv))
         inner, outer = scan.ground_m[lines, starts], scan.ground_m[lines, ends - 1]

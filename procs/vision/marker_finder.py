@@ -21,13 +21,13 @@ class MarkerFinder:
 
     mirror: Mirror
     colours: tuple[ColourRange, ...]
-    """One for each team."""
+    """Colour of the markers of each team."""
     radius_m: float = ROBOT.radius_m
     marker_m: tuple[float, float] = ROBOT.marker_m
     """Heights of the lower and the upper edge of the markers."""
 
     def find(self, pixels: Picture, places_m: Sequence[tuple[float, float]]) -> list[int]:
-        """Returns the team of each robot: the number of its colour, counted from 1, or 0 if none is seen.
+        """Returns the team of each robot: the number of its colour, counted from 1, or 0 if no marker is seen.
 
         Args:
             pixels: picture, height x width x 3.

@@ -20,7 +20,7 @@ from procs.model.algebra import Floats, product
 
 @dataclass(frozen=True)
 class Mirror:
-    """Calibration of one camera with its mirror."""
+    """Calibration of a camera with its mirror."""
 
     size_px: int = 400
     """Height and width of the picture."""
@@ -52,13 +52,13 @@ class Mirror:
         return product(about_y, about_x)
 
     def project(self, points_m: Floats) -> Floats:
-        """Pixels (n, 2) at which points (n, 3) of the robot frame appear."""
+        """Returns the pixels (n, 2) at which points (n, 3) of the robot frame appear."""
         rays = product(points_m - (0.0, 0.0, self.height_m), self._from_mirror)
         spread = np.linalg.norm(rays, axis=1) - rays[:, 2]
         return self._pixels(rays[:, :2] / spread[:, None])
 
     def sphere(self, centre_m: tuple[float, float, float], radius_m: float) -> tuple[float, float, float]:
-        """Column, row and radius in pixels of the circle as which a sphere appears.
+        """Returns column, row and radius in pixels of the circle as which a sphere appears.
 
         A sphere straight above the viewpoint is outside the circle; the radius is negative then.
         """
@@ -70,7 +70,7 @@ class Mirror:
         return float(column), float(row), self.scale_px * sine / spread
 
     def shows_all(self, column: float, row: float, radius_px: float) -> bool:
-        """Returns whether a circle lies within the mirror's round picture; one without a positive radius is none."""
+        """Returns whether a circle lies within the mirror's round picture; False without a positive radius."""
         return (
             radius_px > 0.0 and math.hypot(column - self.centre_px, row - self.centre_px) + radius_px < self.size_px / 2
         )
@@ -86,7 +86,7 @@ class Mirror:
         return x_m, y_m, z_m + self.height_m
 
     def ground(self, pixels: Floats, plane_m: float = 0.0) -> Floats:
-        """Points (n, 2) of the robot frame that pixels (n, 2) see in the level plane at height `plane_m`.
+        """Returns the points (n, 2) of the robot frame that pixels (n, 2) see in the level plane at height `plane_m`.
 
         Pixels that see the horizon or above it give NaN.
         """
@@ -107,7 +107,7 @@ class Mirror:
         return math.inf if level else (self.height_m - plane_m) * math.tan(self.view_angle_rad)
 
     def metres_per_px(self, distance_m: float) -> tuple[float, float]:
-        """Ground covered by one pixel at that distance, along the ray and across it."""
+        """Returns the ground in metres that one pixel covers at a distance: along the ray, and across it."""
         reach_m = math.hypot(distance_m, self.height_m)
         along_px_rad = self.scale_px / (1.0 + self.height_m / reach_m)  # of the angle from straight down
         return reach_m**2 / self.height_m / along_px_rad, reach_m / along_px_rad

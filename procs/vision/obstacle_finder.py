@@ -23,9 +23,7 @@ _BETWEEN_RAYS = 0.23  # standard deviation of a middle across the ray, as a part
 _BESIDE_RAYS = 2  # rays from one body to the next if nothing is between them
 _WHOLE = 0.3  # share of half of its width that may be missing of a robot that counts as seen wholly
 _LOST = 0.2  # standard deviation of a middle across the ray, as a share of the width that is hidden
-_FEET_SAMPLES = 3  # carpet must be visible this close before it, otherwise the near edge is hidden
-
-
+_FEET_SAMPLES = 3  # carpet must be visible so many samples before it, otherwise the near edge is hidden
 _NOWHERE = np.empty(0, np.intp), np.empty((0, 2))
 
 
@@ -45,7 +43,7 @@ class _Group(NamedTuple):
     right_hidden: bool = False
     """Something nearer hides the end that is the first."""
     left_hidden: bool = False
-    """The same of the last."""
+    """The same for the last end."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +60,7 @@ class ObstacleFinder:
     """Standard deviation of the found middle in the picture, along and across the ray; the rays' distance from each
     other may make it larger."""
     least_rays: int = 2
-    """Rays that must meet a robot."""
+    """Number of rays that must meet a robot."""
 
     def find(self, hsv: Picture) -> list[Obstacle]:
         """Returns all robots in a scan (rays, samples, 3) in HSV, counter-clockwise."""
@@ -89,7 +87,7 @@ class ObstacleFinder:
         return rays, np.asarray(edges_m)
 
     def _groups(self, rays: NDArray[np.intp], edges_m: Floats) -> list[_Group]:
-        """Edge points that may belong together: neighbours with a gap that a ball could hide."""
+        """Divides the edge points (n, 2) at gaps that are wider than those that a ball before a robot makes."""
         gaps_m = np.hypot(*(edges_m - np.roll(edges_m, 1, axis=0)).T)  # the first with the last: the rays go around
         ranges_m = np.hypot(edges_m[:, 0], edges_m[:, 1])
         blur_m, _ = self.mirror.metres_per_px_each(ranges_m)

@@ -30,9 +30,9 @@ class ObstacleFusionConfig(Config):
 
 
 class ObstacleFusion(Component):
-    """Publishes the obstacles of both, each once, when there are new ones of the omnidirectional camera.
+    """Publishes the obstacles of both cameras, each once, when the omnidirectional camera has new ones.
 
-    While that camera is silent, new ones of the pair are published as they are.
+    While that camera is silent, new obstacles of the pair are published as they are.
     """
 
     stage = "sensor_process"
@@ -71,9 +71,9 @@ class ObstacleFusion(Component):
 
 
 def joined(around: list[obstacle_t], ahead: list[obstacle_t], same_m: float) -> list[obstacle_t]:
-    """Returns the obstacles of two detectors; two of one place become one, weighted by their inverse covariances.
+    """Returns the obstacles of two detectors, robot frame; two at one place become their weighted mean.
 
-    The nearest two are joined first. Obstacles without a place are left out.
+    Weights are the inverse covariances. The nearest two are joined first. Obstacles without a place are left out.
     """
     ours, theirs = ([each for each in found if plausible(each.x_m, each.y_m)] for found in (around, ahead))
     distances = sorted(
@@ -104,7 +104,7 @@ def _mean(one: obstacle_t, other: obstacle_t) -> obstacle_t:
 
 
 def _covariance(obstacle: obstacle_t) -> Floats | None:
-    """Returns the covariance (2, 2) in m²; None for one that cannot be."""
+    """Returns the covariance (2, 2) in m²; None if the message states an impossible one."""
     (xx, xy), (yx, yy) = obstacle.covariance_m2
     invertible = is_covariance(obstacle.covariance_m2) and xx > 0 and xx * yy > xy * yx
     return np.array(((xx, xy), (yx, yy))) if invertible else None

@@ -13,10 +13,10 @@ from procs.vision.mirror import Mirror
 
 
 class Scan:
-    """A set of equally long scan lines; equal ones are made once a process.
+    """Scan lines of the same length; equal scans are made once in each process.
 
-    `ground_m` (lines, samples, 2) is where the middle of each looked-up pixel meets the ground, robot frame; NaN above
-    the horizon. The pixel, not the ideal place on the line: what is found in a pixel lies where that pixel looks.
+    `ground_m` (lines, samples, 2) is the place on the ground, robot frame, that the middle of each looked-up pixel
+    sees; NaN above the horizon. It is not the ideal place on the scan line, because findings lie where the pixel looks.
     """
 
     def __init__(self, mirror: Mirror, columns: Floats, rows: Floats) -> None:
@@ -29,7 +29,7 @@ class Scan:
     @classmethod
     @lru_cache(maxsize=4)
     def star(cls, mirror: Mirror, rays: int, from_m: float, to_m: float) -> "Scan":
-        """Rays in equal angles, counter-clockwise from straight ahead, a sample a pixel, from near to far.
+        """Returns rays at equal angles, counter-clockwise from straight ahead, a sample a pixel, from near to far.
 
         They end where the mirror's picture does.
         """
@@ -40,7 +40,7 @@ class Scan:
     @classmethod
     @lru_cache(maxsize=4)
     def rings(cls, mirror: Mirror, distances_m: tuple[float, ...]) -> "Scan":
-        """Circles on the ground, counter-clockwise from straight behind, the largest with a sample a pixel.
+        """Returns circles on the ground, counter-clockwise from straight behind, the largest with a sample a pixel.
 
         Those that the mirror's picture does not show are left out.
         """
@@ -51,7 +51,7 @@ class Scan:
         return cls(mirror, *_around(mirror, angles[None], radii_px[:, None]))
 
     def look_up(self, pixels: Picture) -> Picture:
-        """The picture along the scan lines: (lines, samples, 3)."""
+        """Returns the picture along the scan lines: (lines, samples, 3)."""
         if not self._map.size:
             return np.empty((*self._map.shape[:2], 3), np.uint8)
         seen = cv2.remap(  # type: ignore[call-overload]  # the stubs do not know that one map can hold both coordinates
@@ -70,7 +70,10 @@ def _last_px(mirror: Mirror) -> float:
 
 
 def runs(mask: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
-    """Unbroken runs of true values along each line of a mask (lines, samples): line, first sample, sample after it."""
+    """Returns line, first sample and sample after the end of each unbroken run of true values in a mask.
+
+    The mask is (lines, samples); each result is (runs).
+    """
     lines, samples = mask.shape
     padded = np.zeros((lines, samples + 1), dtype=bool)  # a false value after each line ends its runs
     padded[:, :samples] = mask

@@ -20,14 +20,14 @@ _SUBPIXELS = 16  # OpenCV's disparities are in sixteenths of a pixel
 _LEAST_ROWS = 4  # of a column that a body covers
 _COLUMN_GAP = 8  # columns without a body that may lie within one
 _GAP = 0.3  # of the width of a robot: a body may have so wide a gap, too
-_LEAST_WIDTH = 0.4  # share of the columns of a robot that must show one
+_LEAST_WIDTH = 0.4  # share of the columns of a robot that must show a body
 _WHOLE = 0.85  # share of its width from which a robot counts as seen from edge to edge
 _SLACK_PX = 5  # by which widths differ as a rule
 _DOUBT = 0.4  # standard deviation of the middle, as a share of the width that is missing or too much
 
 
 class _Body(NamedTuple):
-    """Columns (n) that show one body, and how far ahead it is in each."""
+    """Columns (n) that show a body, and its distance ahead in each."""
 
     columns: Indices
     near_m: Floats

@@ -12,19 +12,18 @@ from procs.vision.framing import scaled
 Grey = NDArray[np.uint8]
 """Height x width."""
 
-
 _SHORTEST, _LONGEST = 0.25, 5.0  # focal length divided by the width of a frame
 
 
 class StereoRig(Config):
-    """The pair as it was calibrated; camera and detector use the same."""
+    """Calibration of the pair, which camera and detector share."""
 
     width_px: int = Field(default=400, ge=160, le=1600)
     """Width of each frame, in pixels."""
     height_px: int = Field(default=200, ge=80, le=1200)
     """Height of each frame, in pixels."""
     focal_px: float = Field(default=300.0, gt=0.0)
-    """Focal length: a thing as wide as it is far away is so wide in the picture."""
+    """Focal length in pixels: width in the picture of a thing that is as wide as it is far away."""
     baseline_m: float = Field(default=0.16, ge=0.02, le=0.6)
     """Distance between the two cameras, which look along the robot's x axis."""
     forward_m: float = Field(default=0.1, ge=-0.5, le=0.5)

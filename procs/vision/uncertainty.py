@@ -11,7 +11,7 @@ from procs.vision.mirror import Mirror
 def ground_covariance(
     mirror: Mirror, x_m: float, y_m: float, along_px: float, across_px: float | None = None
 ) -> Floats:
-    """Covariance (2 x 2, robot frame, m²) of a point on the ground.
+    """Returns the covariance (2 x 2, robot frame, m²) of a point on the ground.
 
     `along_px` and `across_px` are its standard deviations in the picture, along and across the ray from the picture's
     centre; without the second both are the same.
@@ -23,7 +23,7 @@ def ground_covariance(
 def sphere_covariance(
     mirror: Mirror, centre_m: tuple[float, float, float], area_share: float, deviation_px: float
 ) -> Floats:
-    """Covariance (2 x 2, robot frame, m²) of the place below a sphere whose distance follows from its size.
+    """Returns the covariance (2 x 2, robot frame, m²) of the place below a sphere whose size tells its distance.
 
     Args:
         mirror: the camera.

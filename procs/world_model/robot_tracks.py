@@ -201,7 +201,7 @@ def any_near(
 def without_known(
     positions_m: Floats, covariances_m2: Floats, known_m: Floats, known_m2: Floats, within_m: float
 ) -> Flags:
-    """Flags (m) of the sightings that remain when each known robot takes away the one that it is.
+    """Returns flags (m) of the sightings that remain when each known robot takes its own sighting away.
 
     A known robot takes away one sighting at most, so that an opponent beside a mate stays. Robots are seen by their
     near sides only and at different times, so a sighting within `within_m` of a known robot is that robot whatever

@@ -74,9 +74,9 @@ class WorldModelConfig(Config):
     use_capture_times: bool = True
     """Let a sighting count at the time of its exposure; otherwise, to see what that brings, when it arrives."""
     use_ball_velocity: bool = True
-    """Tell the velocity of the ball; otherwise, to see what it brings, the ball always seems to rest."""
+    """Tell the velocity of the ball; otherwise, to see what that brings, the ball always seems to rest."""
     message_period_s: float = Setting(default=0.1, gt=0.0)
-    """Time from one message to the team to the next."""
+    """Time from one message to the team to the next; messages go with the nearest frame of the camera."""
     sight_correlation: float = Setting(default=1.0, ge=1.0)
     """Frames that share one error of the camera; the filters widen sightings by it."""
     shake_s_m: float = Setting(default=0.7, ge=0.0)

@@ -1,4 +1,4 @@
-"""All skills by the names that agents use, and the machine that runs one at a time."""
+"""All skills by the names that agents use, and the runner of one skill at a time."""
 
 from procs.behaviour.skills.getting import GetBall, Intercept, Receive
 from procs.behaviour.skills.keeping import KeepGoal, KeepLine
@@ -29,7 +29,7 @@ SKILLS: dict[str, type[StateMachine]] = {
 }
 
 
-class Machine:
+class SkillRunner:
     """Runs the skill of the newest command.
 
     A new command for the same skill moves its target while it runs; it begins anew if it had ended. A skill that

@@ -48,7 +48,7 @@ def redraw(file: Path) -> bool:
 
 
 def _level(states: Sequence[State], inside: str, ends: bool) -> Iterator[str]:
-    """Draws the states of a level; `inside` is the name of the one that holds them."""
+    """Draws the states of a level; `inside` is the path of the state that holds them."""
     indent = _INDENT * (inside.count("/") + 1 + bool(inside))
     prefix = f"{inside}/" if inside else ""
     for state in states:

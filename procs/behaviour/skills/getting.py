@@ -10,11 +10,11 @@ from procs.behaviour.view import Ball, Robot
 from procs.model.field import Point
 from procs.model.geometry import ahead, bearing_rad, wrap_rad
 
-_HANDLING_ON_M = 1.0
+_HANDLING_ON_M = 1.0  # from the ball the handling is on
 _PRESSED_M = 0.04  # by which the robot aims too near to the ball, to press it into the mouth
-_STAGING_M = 0.75
-_ALIGNED_RAD = 0.9
-_FACING_RAD = 0.25
+_STAGING_M = 0.75  # behind the ball of a set piece, where the robot turns towards it
+_ALIGNED_RAD = 0.9  # a robot whose way to that ball differs more from the kick's direction comes from beside
+_FACING_RAD = 0.25  # the mouth faces the ball within this angle
 _WAITING_M = 0.5  # from the ball of a set piece until the mouth faces it
 _ENTRY_M_S = 0.25  # relative to the ball, which bounces off a faster mouth
 _NEAR_M = 1.0  # so near to the ball the robot gets slower ...
@@ -25,7 +25,7 @@ _CONTEST_M = 1.2  # a rival so near to the ball leaves no time for that
 _HELD_M = 0.5  # an opponent this near to the ball has it
 _KEPT_M_S = 3.6  # a faster ball bounces off a standing mouth; the robot gives before it ...
 _GIVING_S, _GIVING_M, _GIVING_M_S = 0.5, 0.4, 0.7  # ... from so long before its arrival, so far and so fast
-_ON_LINE_M = 0.3
+_ON_LINE_M = 0.3  # a robot this near to its place on the ball's way has got there
 _PASSED_M_S = 1.2  # a pass is at least so fast ...
 _TOWARDS = 0.7  # ... and comes towards the robot: cosine of the angle
 _WITH_MATE_M = 0.42  # the passer has a ball so near to it
@@ -68,7 +68,7 @@ class _Capture(StateMachine):
         return scene.view.ball.speed_m_s > _KEPT_M_S and self._stand.time_s < _GIVING_S and near
 
     def _settle(self, scene: Scene) -> Step:
-        """The ball follows the robot, which stops before it has pulled the ball back."""
+        """Stops the robot before it has pulled the ball back; the ball follows."""
         return Step(Drive(scene.view.own.place, scene.view.own.heading_rad), dribble=True)
 
     def _keep_ball(self, _scene: Scene) -> Step:

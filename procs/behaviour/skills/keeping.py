@@ -6,22 +6,23 @@ from typing import NamedTuple
 from procs.behaviour import ballistics
 from procs.behaviour.skills.skill import Drive, Scene, Step
 from procs.behaviour.skills.states import Exit, State, StateMachine, otherwise
-from procs.behaviour.view import Robot
 from procs.model.field import Field, Point
 from procs.model.geometry import ahead, bearing_rad, clamp
 
 BEFORE_LINE_M = 0.45
 """The keeper's middle is so far before the goal line, or further out."""
 _ON_GUARD_M = 1.5  # a keeper further away drives around robots on its way home
-_SHOT_M_S = 0.8
-_LOOK_AHEAD_S = 3.0
+_SHOT_M_S, _LOOK_AHEAD_S = 0.8, 3.0  # a ball that comes faster, and would be there so soon, is a shot
+_OFF_POST_M = 0.15  # a keeper on its line stays so far inside the posts
+_COVERED, _LEAN = 0.75, 0.08  # shares: of its reach while no shot comes, and of the ball's offset that it moves aside
+_LEAST_DEPTH_M = 0.3  # a ball nearer to the goal line counts as so far before it
+_TURNED_RAD = 1.3  # the keeper's heading differs from straight ahead by no more
 _WIDE_M = 0.6  # a shot that passes the post further away is let go
 _WIDE_S = 2.0  # a ball that crosses the goal line so soon, beside the goal, is let go
 _COMES_OUT_M = 8.0  # a ball nearer to the goal draws the keeper out ...
 _OUT_1_M = 0.45  # ... by so much for each metre
 _FRONT = 1.6  # cosine of the ball's direction from the goal by this is the share for balls from the side
-_STEP_S = 0.05
-_CARRY_S = 0.25  # a keeper that drives gains the way of this time over one at rest
+_STEP_S = 0.05  # from one place on the ball's way that is looked at to the next
 _CAUGHT_M = 0.2  # from the keeper's middle to the ball's way: the ball hits the keeper's body
 _CHANGE_M_S2, _SPEED_M_S = 2.8, 2.8  # of the keeper that does not stop at the ball's way
 _HOPELESS_S = 0.2  # by which a dive may be late: the ball's velocity is known roughly
@@ -55,9 +56,9 @@ class KeepLine(StateMachine):
     def _cover(self, scene: Scene) -> Step:
         field, ball = scene.field, scene.view.ball
         reach_m = _reach_m(field)
-        depth_m = max(ball.place.x_m + field.half_length_m, 0.3)
+        depth_m = max(ball.place.x_m + field.half_length_m, _LEAST_DEPTH_M)
         cover_m = ball.place.y_m * BEFORE_LINE_M / depth_m
-        y_m = clamp(cover_m + 0.08 * ball.place.y_m, -reach_m * 0.75, reach_m * 0.75)
+        y_m = clamp(cover_m + _LEAN * ball.place.y_m, -reach_m * _COVERED, reach_m * _COVERED)
         return self._stand(scene, Point(_line_x_m(field), y_m))
 
     def _block(self, scene: Scene) -> Step:
@@ -67,10 +68,12 @@ class KeepLine(StateMachine):
 
     def _stand(self, scene: Scene, place: Point) -> Step:
         heading_rad = bearing_rad(place, scene.view.ball.place) if scene.view.ball.known else 0.0
-        return Step(Drive(place, clamp(heading_rad, -1.3, 1.3), scene.speed_m_s), dribble=scene.holds_ball)
+        return Step(
+            Drive(place, clamp(heading_rad, -_TURNED_RAD, _TURNED_RAD), scene.speed_m_s), dribble=scene.holds_ball
+        )
 
     def _stop_shot(self, scene: Scene, place: Point, end_speed_m_s: float = 0.0) -> Step:
-        """Drives straight to the way of a shot, whoever is near; a keeper far from its goal drives around robots."""
+        """Drives straight to the way of a shot, even past robots; a keeper far from its goal drives around them."""
         step, away = self._stand(scene, place), math.dist(place, scene.view.own.place) > _ON_GUARD_M
         assert step.drive
         return step._replace(drive=step.drive._replace(end_speed_m_s=end_speed_m_s, avoid_robots=away))
@@ -187,6 +190,7 @@ def best_save(scene: Scene) -> Save | None:
     Places behind the keeper's line are too late, and places beyond `_ON_GUARD_M` too far out.
     """
     own, best = scene.view.own, None
+    start = ballistics.carried(own.place, own.velocity_m_s)
     for step in range(1, round(_LOOK_AHEAD_S / _STEP_S)):
         time_s = step * _STEP_S
         place = ballistics.ball_after(scene.view.ball, time_s, scene.view.bodies)
@@ -195,15 +199,11 @@ def best_save(scene: Scene) -> Save | None:
             break
         if out_m > BEFORE_LINE_M + _ON_GUARD_M:
             continue
-        away_m = max(0.0, math.dist(_carried(own), place) - _CAUGHT_M)
+        away_m = max(0.0, math.dist(start, place) - _CAUGHT_M)
         spare_s = time_s - _dive_s(away_m)
         if best is None or spare_s > best.spare_s:
             best = Save(place, spare_s, stops=ballistics.reach_s(away_m) <= time_s)
     return best
-
-
-def _carried(own: Robot) -> Point:
-    return Point(own.place.x_m + _CARRY_S * own.velocity_m_s.x_m, own.place.y_m + _CARRY_S * own.velocity_m_s.y_m)
 
 
 def _dive_s(distance_m: float) -> float:
@@ -216,7 +216,7 @@ def _dive_s(distance_m: float) -> float:
 
 def _reach_m(field: Field) -> float:
     """Returns how far from the middle of the goal a keeper on its line stands at most."""
-    return field.goal_width_m / 2 - 0.15
+    return field.goal_width_m / 2 - _OFF_POST_M
 
 
 def _line_x_m(field: Field) -> float:

@@ -10,9 +10,8 @@ from procs.behaviour.skills.states import Exit, State, StateMachine, otherwise
 from procs.model.field import Point
 from procs.model.geometry import ahead, bearing_rad, wrap_rad
 
-_NEAR_M = 0.1
-_NEAR_RAD = 0.1
-_MARK_M = 0.9
+_NEAR_M, _NEAR_RAD = 0.1, 0.1  # from place and heading a robot is there
+_MARK_M = 0.9  # from the marked opponent
 _BLOCK_M, _LEAD_S = 1.0, 0.3  # from a dribbled ball, where it will be so much later
 _LAID_M = 1.0  # the ball so near to the place is what is blocked
 

@@ -11,15 +11,17 @@ from procs.model.field import Point
 from procs.model.geometry import ahead, bearing_rad, clamp, wrap_rad
 
 _LOST_S = 0.3  # a ball that the light barrier misses for longer is lost
-_LEAST_KICK_M_S = 1.0
-_DRIBBLE_M_S = 2.7
-_THERE_M = 0.3
+_LEAST_KICK_M_S = 1.0  # slowest kick
+_DRIBBLE_M_S = 2.7  # fastest drive with the ball
+_THERE_M = 0.3  # a dribble ends so near to its place
 _FACE_M = 2.0  # a dribbling robot so near to its place turns to the heading that it is to have there ...
 _SIDEWAYS_RAD = 1.2  # ... unless it would pull the ball back
 _PULLS_RAD = 1.1  # a drive further off the mouth's direction would pull the ball, which the rules allow for 0.3 m
-_AIMED_RAD = 0.1
-_SHOT_M_S = 11.0
-_ARRIVAL_M_S = 2.7
+_AIMED_RAD = 0.1  # a robot that aims has turned to its place within this angle
+_SHOT_M_S = 11.0  # speed of a shot
+_SHOT_OFF_M, _SHOT_RAD = 0.15, (0.02, 0.1)  # a shot may miss its place by so much, within these limits of the angle
+_ARRIVAL_M_S = 2.7  # speed at which a pass arrives
+_PASS_RAD = 0.05  # error of a pass
 _CLEARED_RAD = 0.15  # error of a clearance
 
 
@@ -236,7 +238,7 @@ class Shoot(_Kick):
         return _SHOT_M_S
 
     def _tolerance_rad(self, distance_m: float) -> float:
-        return clamp(0.15 / max(distance_m, 0.1), 0.02, 0.1)
+        return clamp(_SHOT_OFF_M / max(distance_m, 0.1), *_SHOT_RAD)
 
 
 class Clear(Shoot):
@@ -269,7 +271,7 @@ class Pass(_Kick):
         return ballistics.kick_speed_m_s(rolls_m, scene.speed_m_s or _ARRIVAL_M_S, bodies)
 
     def _tolerance_rad(self, _distance_m: float) -> float:
-        return 0.05
+        return _PASS_RAD
 
 
 class Push(Pass):

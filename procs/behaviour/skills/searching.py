@@ -9,14 +9,15 @@ from procs.model.field import Field, Point
 from procs.model.geometry import bearing_rad
 
 _STAND_S = 1.5  # a standing camera sees best, and most robots find their place at once
-_TURN_RAD_S, _TURN_S = 0.8, 4.0
-_AHEAD_M_S, _AHEAD_M = 0.5, 1.0
+_TURN_RAD_S, _TURN_S = 0.8, 4.0  # of the turn on the spot: half a circle
+_AHEAD_M_S, _AHEAD_M = 0.5, 1.0  # of the way ahead
 _BESIDE_M = 0.15  # room beside a robot that drives ahead
 _STRIP_M = 1.0  # a line ahead, at most so far to the side, shows that the field goes on
-_THERE_M = 0.3
+_THERE_M = 0.3  # a robot this near to a place looks from there
 _WAY_S = 10.0  # across the field; a robot that is not there by then looks from where it is
-_LOOK_S = 0.6
+_LOOK_S = 0.6  # from each place
 _VANTAGE = ((-0.55, 0.45), (-0.55, -0.45), (0.0, 0.55), (0.0, -0.55), (0.55, 0.45), (0.55, -0.45))
+"""Vantage points in the attack frame, as shares of half the length and half the width of the field."""
 _IDLE = ("goalkeeper", "absent")
 
 

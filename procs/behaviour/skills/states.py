@@ -22,7 +22,7 @@ class Exit(NamedTuple):
 
 
 class State(NamedTuple):
-    """A state: a leaf acts, another one holds states."""
+    """A state: a leaf acts, and any other state holds states."""
 
     name: str
     act: Act | None = None
@@ -90,7 +90,7 @@ def _named(states: Sequence[State], name: str) -> State:
 
 
 def _descent(state: State) -> list[State]:
-    """Returns the state and the ones that are entered with it."""
+    """Returns the state and the states inside that are entered with it."""
     path = [state]
     while path[-1].inside:
         path.append(path[-1].inside[0])

@@ -23,7 +23,7 @@ class Ball:
         robot_height_m: float = ROBOT.height_m,
         goal_height_m: float = 1.0,
     ) -> None:
-        """The ball meets robots and goals while its lowest point is not above them."""
+        """Adds the ball to the space; it meets robots and goals while its lowest point is not above them."""
         self.z_m = 0.0
         """Height of its lowest point above the ground."""
         self.vz_m_s = 0.0

@@ -13,7 +13,7 @@ _TEAMS = {CYAN: game_state_t.TEAM_CYAN, MAGENTA: game_state_t.TEAM_MAGENTA}
 
 
 def event_message(event: Event, players: Mapping[str, Player]) -> match_event_t:
-    """Returns an event for the referee; the team of a goal is the one that attacks that goal."""
+    """Returns an event for the referee; the team of a goal is the team that attacks that goal."""
     player = players.get(event.robot)
     message = match_event_t()
     message.kind = int(event.kind)

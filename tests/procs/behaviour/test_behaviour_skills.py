@@ -6,7 +6,7 @@ import pytest
 
 from procs.behaviour import ballistics
 from procs.behaviour.bodies import USUAL
-from procs.behaviour.skills.book import Machine
+from procs.behaviour.skills.book import SkillRunner
 from procs.behaviour.skills.getting import GetBall, Intercept
 from procs.behaviour.skills.keeping import KeepGoal, KeepLine
 from procs.behaviour.skills.moving import Goto, Mark
@@ -289,31 +289,31 @@ def test_keeper_covers_the_ball_side_between_the_posts() -> None:
 
 
 def test_machine_updates_a_running_skill_and_restarts_an_ended() -> None:
-    machine, seen = Machine(), view(OWN, Ball(known=False))
-    machine.begin("get_ball")
-    assert machine.step(scene(seen)).status is Status.FAILED
-    assert machine.step(scene(view(OWN, FAR_BALL))).status is Status.FAILED
-    machine.begin("get_ball")
-    assert machine.step(scene(view(OWN, FAR_BALL))).status is Status.RUNNING
-    machine.begin("shoot")
+    runner, seen = SkillRunner(), view(OWN, Ball(known=False))
+    runner.begin("get_ball")
+    assert runner.step(scene(seen)).status is Status.FAILED
+    assert runner.step(scene(view(OWN, FAR_BALL))).status is Status.FAILED
+    runner.begin("get_ball")
+    assert runner.step(scene(view(OWN, FAR_BALL))).status is Status.RUNNING
+    runner.begin("shoot")
     held = scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
-    assert machine.step(held).kick_m_s > 0
-    machine.begin("shoot")
-    assert machine.step(held).kick_m_s == 0.0  # still waits for the kick that it asked for
+    assert runner.step(held).kick_m_s > 0
+    runner.begin("shoot")
+    assert runner.step(held).kick_m_s == 0.0  # still waits for the kick that it asked for
     for x_m in (1.0, 2.0):
-        machine.begin("goto")
-        assert drive(machine.step(scene(seen, x_m))).place.x_m == x_m
+        runner.begin("goto")
+        assert drive(runner.step(scene(seen, x_m))).place.x_m == x_m
 
 
 def test_ended_skill_stops_the_robot_and_keeps_the_ball() -> None:
-    machine, held = Machine(), scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
-    machine.begin("get_ball")
-    steps = [machine.step(held) for _ in range(4)]
+    runner, held = SkillRunner(), scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
+    runner.begin("get_ball")
+    steps = [runner.step(held) for _ in range(4)]
     assert [(step.status, step.drive, step.dribble) for step in steps[2:]] == [(Status.FINAL, None, True)] * 2
 
 
 def test_machine_without_a_command_stands() -> None:
-    step = Machine().step(scene(view(OWN, FAR_BALL), holds_ball=True))
+    step = SkillRunner().step(scene(view(OWN, FAR_BALL), holds_ball=True))
     assert (step.status, step.drive, step.dribble, step.kick_m_s) == (Status.INACTIVE, None, False, 0.0)
 
 

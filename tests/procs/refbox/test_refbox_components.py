@@ -177,7 +177,7 @@ def test_client_tries_again_and_says_once_why() -> None:
     bench.finalize()
     said = [line.text for line in bench.logged]
     refused = f"no RefBox at 127.0.0.1:{free}: Connection refused; it is tried again every 0.2 s"
-    found = [f"connected with the RefBox at 127.0.0.1:{free}", "lost the RefBox: it has ended"]
+    found = [f"connected with the RefBox at 127.0.0.1:{free}", "lost the RefBox: it closed the connection"]
     assert said == [refused, *found] * 2
 
 

@@ -65,7 +65,7 @@ def test_goal_is_counted_and_the_ball_goes_to_the_centre() -> None:
         game_state_t.TEAM_MAGENTA,
     )
     assert bench.port("ball_placement").sent[-1].placement_id == 2
-    assert bench.logged[-1].text.startswith("kick off for magenta, cyan 1:0 magenta")
+    assert bench.logged[-1].text.startswith("kick-off for magenta, cyan 1:0 magenta")
 
 
 def test_events_of_several_ticks_all_count() -> None:

@@ -94,7 +94,7 @@ def test_goal_by_hand_is_that_of_the_penalty_at_hand() -> None:
     assert ask(script, "goal", "cyan") == ""
     assert (script.state, script.score) == ((State.PENALTY, MAGENTA, True), (1, 0))
     assert counted(script) == ([1, 0], [1, 0])
-    assert ask(script, "goal", "cyan") == "cyan cannot score: the penalty is one of magenta"
+    assert ask(script, "goal", "cyan") == "cyan cannot score: the penalty is that of magenta"
     assert ask(script, "goal", "magenta") == ""
     assert (script.score, counted(script)) == ((1, 1), ([1, 1], [1, 1]))
 
@@ -211,7 +211,7 @@ def test_drawn_match_goes_on_after_its_end() -> None:
     ask(script, "second_half")
     ask(script, "goal", "cyan")
     ask(script, "end_game")
-    assert ask(script, "kickoff", "cyan").startswith("no kick off after the end"), "it is decided"
+    assert ask(script, "kickoff", "cyan").startswith("no kick-off after the end"), "it is decided"
     ask(script, "goal", "magenta")
     assert ask(script, "penalty", "cyan").startswith("no penalty after the end"), "the overtime comes first"
     assert ask(script, "kickoff", "magenta") == ""
