@@ -60,6 +60,10 @@ class ContactSettings(_Settings):
     """Ball at a robot's side or back. ER-Force measured 0.6, TIGERs 0.2 to 0.55."""
     mouth_bounce: Annotated[float, Field(ge=0.0, le=1.0)] = 0.2
     """Ball at a robot's mouth. ER-Force: 0.2 at the dribbler."""
+    top_bounce: Annotated[float, Field(ge=0.0, le=1.0)] = 0.5
+    """Ball that falls on the top of a robot: share of its vertical speed that is left; as at its side."""
+    roll_off_m_s: Annotated[float, Field(gt=0.0, le=5.0)] = 0.5
+    """Least speed with which such a ball moves away from the robot's middle; an estimate: mirrors are not flat."""
     robot_bounce: Annotated[float, Field(ge=0.0, le=1.0)] = 0.3
     """Root of the bounce of two robots: 0.09 between them. At walls the product with theirs."""
     wall_friction: Annotated[float, Field(ge=0.0)] = 0.5

@@ -24,6 +24,7 @@ from procs.simulation.physics.robot_body import Robot
 from procs.simulation.physics.room import Room
 from procs.simulation.physics.settings import PhysicsSettings
 from procs.simulation.physics.start_places import Pose, starting_pose
+from procs.simulation.physics.tops import Tops
 
 _FREE_M = 0.02  # between robot and ball when the field crew puts it down
 
@@ -85,6 +86,7 @@ class World:
             mouth = Mouth(body, self.ball, self._physics.handling, 1.0 - noise.handling_loss)
             self.kickers[name] = Kicker(mouth, robot, self._physics.kicker, noise, rng)
             self.batteries[name] = Battery(self._physics.battery)
+        self._tops = Tops(list(self.robots.values()), robot.height_m, self.ball, self._physics.contacts)
         self._contacts = Contacts(self._space, list(self.robots.values()))
         self._judge = LineJudge(self._field, self.ball.radius_m)
         self._wheel_load_n = robot.mass_kg * GRAVITY_M_S2 / 3
@@ -180,6 +182,7 @@ class World:
         place = self._room.nearest(wanted, self.ball.radius_m, robots, self._clearance_m)
         if place is not None:
             self.ball.put(*place)
+            self._bar.begin_at(place.x_m)
         return place is not None
 
     def _drain_batteries(self, duration_s: float) -> None:
@@ -209,11 +212,13 @@ class World:
         events += [self._ball_event(Kind.KICK, name) for name, push in pushes.items() if push.kicked]
         self.ball.rub(duration_s)
         self._space.step(duration_s)
-        self.ball.fall(duration_s)
+        fallen_on = self._tops.fall(duration_s)
         states = self._bodies.states()
         if self._bar.stops(*states[0][:2]):
             states = self._bodies.states()
         touching = self._contacts.take_touches() | pushes.keys()
+        if fallen_on is not None:
+            touching.add(fallen_on)
         if touching:
             x_m, y_m, _, vx_m_s, vy_m_s, _ = states[0]
             speed_m_s = math.hypot(vx_m_s, vy_m_s)
