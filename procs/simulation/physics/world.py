@@ -27,6 +27,7 @@ from procs.simulation.physics.start_places import Pose, starting_pose
 from procs.simulation.physics.tops import Tops
 
 _FREE_M = 0.02  # between robot and ball when the field crew puts it down
+_PRESSED_M = 0.002  # as much as bodies that touch may overlap
 
 
 class World:
@@ -118,7 +119,7 @@ class World:
         for name, pose in self._starts.items():
             self.robots[name].put(*pose)
             self.batteries[name].refill()
-        self._clear_ball(self._middles(), self._middles())
+        self._clear_ball(self._starts, self._middles())
 
     def place_robot(self, name: str, pose: Pose) -> bool:
         """Sets a robot down at rest, at the nearest place that is free; a ball that lies in its way is put beside it.
@@ -128,7 +129,7 @@ class World:
         others = [Point(*robot.body.position) for robot in self.robots.values() if robot.name != name]
         radius_m = self._robot.radius_m
         place = self._room.nearest(Point(pose.x_m, pose.y_m), radius_m, others, 2 * radius_m)
-        if place is None or not self._clear_ball([place], [*others, place]):
+        if place is None or not self._clear_ball({name: Pose(*place, pose.heading_rad)}, [*others, place]):
             return False
         self.robots[name].put(*place, pose.heading_rad)
         return True
@@ -171,10 +172,15 @@ class World:
         """Returns the middles of all robots."""
         return [Point(*robot.body.position) for robot in self.robots.values()]
 
-    def _clear_ball(self, places: Sequence[Point], robots: Sequence[Point]) -> bool:
-        """Puts a ball that lies where robots are set down beside all `robots`; returns False if there is no room."""
-        ball = self.ball
-        if ball.flies or all(math.dist(place, ball.body.position) >= self._robot.mouth_m for place in places):
+    def _clear_ball(self, poses: Mapping[str, Pose], robots: Sequence[Point]) -> bool:
+        """Puts a ball that lies where robots are set down beside all `robots`; returns False if there is no room.
+
+        A ball that touches no more than a robot's hull, as in its mouth, stays where it is.
+        """
+        ball, least_m = self.ball, self.ball.radius_m - _PRESSED_M
+        if ball.flies or all(
+            self.robots[name].gap_m(pose, *ball.body.position) >= least_m for name, pose in poses.items()
+        ):
             return True
         return self._put_ball(Point(*ball.body.position), robots)
 
