@@ -15,7 +15,7 @@ from procs.simulation.physics.battery import Battery
 from procs.simulation.physics.bodies import Bodies, State
 from procs.simulation.physics.contacts import Contacts
 from procs.simulation.physics.crossbar import Crossbar
-from procs.simulation.physics.drive import Drive
+from procs.simulation.physics.drive import Drive, longest_step_s
 from procs.simulation.physics.events import Event, Kind, LineJudge
 from procs.simulation.physics.kick_mechanism import Kicker, Push
 from procs.simulation.physics.mouth import Mouth
@@ -67,6 +67,7 @@ class World:
         self._field = field or Field()
         self._robot = robot
         self._physics = physics or PhysicsSettings()
+        self._step_s = min(self._physics.step_s, longest_step_s(robot, self._physics.drive))
         noise = noise or Noise()
         self._space = pymunk.Space()
         self._space.collision_slop = 0.001  # pymunk's default is meant for pixels: here it would be 10 cm
@@ -156,7 +157,7 @@ class World:
 
     def advance(self, duration_us: int) -> list[Event]:
         """Moves the world on; returns the events, sorted by kind and robot."""
-        steps = max(1, math.ceil(duration_us / (self._physics.step_s * 1e6)))
+        steps = max(1, math.ceil(duration_us / (self._step_s * 1e6)))
         start_us = self.time_us
         touched: dict[str, Event] = {}
         events: list[Event] = []
