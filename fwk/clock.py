@@ -37,6 +37,11 @@ class Clock:
         """Nominal time between ticks in seconds."""
         return self.period_us / US_PER_S
 
+    @property
+    def iteration_s(self) -> float:
+        """Nominal time from one iteration of the component to the next in seconds: `every` ticks."""
+        return self.period_us * self.every / US_PER_S
+
     def since_s(self, time_us: int) -> float:
         """Returns the logical time since `time_us`, in s."""
         return (self.now_us - time_us) / US_PER_S

@@ -194,7 +194,7 @@ def _node(value: Any) -> Node:
 
 def _value(values: Any, dotted: str) -> Any:
     for key in dotted.split("."):
-        values = values[key] if isinstance(values, dict) else None
+        values = values.get(key) if isinstance(values, dict) else None
     return values
 
 

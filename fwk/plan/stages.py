@@ -95,4 +95,15 @@ def turns_of(asked: Asked, declared: Declaration, former: int | None, problems: 
         right = f"it should be a whole number from 0 on, of at most {_OFFSET_DIGITS} digits, such as 1 or '{{number}}'"
         problems.add(place, asked.name, f"offset is '{text}'; {right}")
         return every, 0
+    if node is not None and node.value is not None and every == 1:
+        _refuse_idle_offset(asked, declared, node, int(text), problems)
     return every, int(text)
+
+
+def _refuse_idle_offset(asked: Asked, declared: Declaration, node: Node, offset: int, problems: Problems) -> None:
+    """Notes an offset of the launch file that changes nothing; that of a continuous component is a mistake."""
+    if declared.rate_hz is not None:
+        text = "it is continuous and takes part in no tick; leave 'offset' out"
+        problems.add(node.place, asked.name, text)
+    elif offset and asked.entry.every is None:
+        problems.note(node.place, asked.name, "'offset' changes nothing, because it iterates in each tick; add 'every'")

@@ -98,7 +98,7 @@ class Agent(Component):
             return greedy.decide(view, game, held, field)
         idle = roles.Job(self.role.value.role or roles.DEFENDER, view.own.place)
         job = roles.assign(view, field).get(self._robot, idle)
-        order = self._tactics.decide(view, game, job, held, self.clock.period_s)
+        order = self._tactics.decide(view, game, job, held, self.clock.iteration_s)
         return roles.PASSER if self._tactics.barred else job.role, order
 
     def _tell_pass(self, told: pass_agreement_t) -> None:

@@ -179,7 +179,7 @@ class Navigator(Component):
         limits, held = self.config.limits, self.kicker_state.value.ball_held
         change_m_s2 = self._ball_change_m_s2(wanted, heading_rad) if held else limits.acceleration_m_s2
         turn_rad_s2 = limits.ball_angular_acceleration_rad_s2 if held else limits.angular_acceleration_rad_s2
-        period_s = self.clock.period_s
+        period_s = self.clock.iteration_s
         self._before = motion.approach(self._before, wanted, period_s, change_m_s2, turn_rad_s2)
         # The robot turns on while it follows the command, so the command is meant for the middle of that time.
         middle_rad = heading_rad + self._before.omega_rad_s * period_s / 2

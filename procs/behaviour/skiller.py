@@ -133,7 +133,7 @@ class Skiller(Component):
             kicker.charged,
             self._kick.done if self._kick and self._kick.finished else None,
             set_piece=game.whose is Whose.OURS and not game.free_play,
-            duration_s=self.clock.period_s,
+            duration_s=self.clock.iteration_s,
             field=self.config.field,
             game=game,
             sight=None if view.localized else self._sight(),

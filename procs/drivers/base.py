@@ -24,7 +24,7 @@ from procs.model.units import US_PER_S
 from procs.model.wheel_messages import WheelReader
 
 _PLAUSIBLE = 2.0  # wheels cannot turn faster than their limit times this, even when they are pushed
-_LONGEST_GAP_S = 0.5  # a measurement after a longer silence does not cover the time before
+_LONGEST_GAP_S = 0.5  # what comes after a longer silence does not cover the time before
 
 _Deviation = Annotated[float, Setting(ge=0.0, le=1.0)]
 
@@ -76,6 +76,7 @@ class Base(Component):
         self._measured_us = 0
         self._wheels = WheelReader("wheel_state", "ignored", self.log.error)
         self._late = False
+        self._driven_us = -1  # time of the newest wheel command
         self._apply_settings(STANDSTILL)
 
     def config_changed(self) -> None:
@@ -146,7 +147,9 @@ class Base(Component):
 
     def _drive(self) -> None:
         robot = self.config.robot
-        velocity = self._ramp.advance(self._wanted(), self.clock.period_s)
+        passed_s = self.clock.iteration_s if self._driven_us < 0 else self.clock.since_s(self._driven_us)
+        self._driven_us = self.clock.now_us
+        velocity = self._ramp.advance(self._wanted(), min(passed_s, _LONGEST_GAP_S))
         possible = within_wheel_limit(velocity, robot.wheel_limit_m_s, robot.wheel_distance_m)
         self.wheel_command.value.wheel_m_s = list(wheels_of(possible, robot.wheel_distance_m))
         self.wheel_command.write()

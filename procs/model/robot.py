@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Literal, Protocol
 
-from pydantic import BaseModel, ConfigDict, Field, PositiveFloat, PositiveInt
+from pydantic import BaseModel, ConfigDict, Field, PositiveInt
 
 from procs.model.ball import BallModel
 
@@ -23,15 +23,15 @@ class RobotModel(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    radius_m: float = Field(default=0.25, gt=0.0, le=0.5)
+    radius_m: float = Field(default=0.25, ge=0.05, le=0.5)
     """Radius of the round body, in metres. Rule book of 2016: a footprint of 0.30 to 0.52 m."""
-    height_m: float = Field(default=0.6, gt=0.0, le=2.0)
+    height_m: float = Field(default=0.6, ge=0.05, le=2.0)
     """Height of the body, in metres; the team markers are below. Rule book of 2016: 0.40 to 0.80 m."""
-    mass_kg: PositiveFloat = 35.0
+    mass_kg: float = Field(default=35.0, ge=1.0, le=200.0)
     """Mass of the whole robot, in kilograms. The robots of simatch have 31 to 39 kg."""
-    wheel_distance_m: float = Field(default=0.2, gt=0.0, le=0.5)
+    wheel_distance_m: float = Field(default=0.2, ge=0.02, le=0.5)
     """Distance from the robot's middle to each wheel, in metres."""
-    wheel_limit_m_s: PositiveFloat = 3.5
+    wheel_limit_m_s: float = Field(default=3.5, gt=0.0, le=20.0)
     """Highest rim speed of the wheels, in m/s."""
     kick_limit_m_s: float = Field(default=12.0, gt=1.0, le=20.0)
     """Highest speed of a kicked ball, in m/s, whatever its elevation. MRA takes up to 12 m/s for plausible."""

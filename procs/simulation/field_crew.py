@@ -68,14 +68,14 @@ class FieldCrew:
         return self._mistake_in_place(wanted.x_m, wanted.y_m)
 
     def _mistake_in_ball(self, wanted: place_ball_t) -> str:
-        for name, value, limit in (
-            ("z_m", wanted.z_m, _HIGHEST_M),
-            ("vx_m_s", wanted.vx_m_s, _FASTEST_M_S),
-            ("vy_m_s", wanted.vy_m_s, _FASTEST_M_S),
-            ("vz_m_s", wanted.vz_m_s, _FASTEST_M_S),
+        for name, value, least, most in (
+            ("z_m", wanted.z_m, 0.0, _HIGHEST_M),
+            ("vx_m_s", wanted.vx_m_s, -_FASTEST_M_S, _FASTEST_M_S),
+            ("vy_m_s", wanted.vy_m_s, -_FASTEST_M_S, _FASTEST_M_S),
+            ("vz_m_s", wanted.vz_m_s, -_FASTEST_M_S, _FASTEST_M_S),
         ):
-            if not abs(value) <= limit:
-                return f"{name} is {value}; it should be at most {limit:g}"
+            if not least <= value <= most:
+                return f"{name} is {value}; it should be from {least:g} to {most:g}"
         return self._mistake_in_place(wanted.x_m, wanted.y_m)
 
     def _mistake_in_place(self, x_m: float, y_m: float) -> str:

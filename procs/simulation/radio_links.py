@@ -54,7 +54,7 @@ class RadioLinks(Generic[T]):
         self._under_way: list[tuple[int, int, str, T]] = []
         self._pairs = [(one, two) for place, one in enumerate(self._receivers) for two in self._receivers[:place]]
         self._back_us: dict[frozenset[str], int] = {}
-        """Pair of robots to the time at which the newest interruption of their link ends."""
+        """Pair of robots to the time at which the interruptions of their link have ended."""
         self._passed_us = -1
         self._credit_bit = 0.0
 
@@ -71,14 +71,14 @@ class RadioLinks(Generic[T]):
         likely = -math.expm1(-settings.outages_1_min * passed_s / 60)
         for pair, (luck, length) in zip(self._pairs, drawn.tolist(), strict=True):
             if luck < likely:
-                self._back_us[frozenset(pair)] = now_us + round(-settings.outage_s * math.log1p(-length) * 1e6)
+                back_us = now_us + round(-settings.outage_s * math.log1p(-length) * 1e6)
+                self._back_us[frozenset(pair)] = max(back_us, self._back_us.get(frozenset(pair), 0))
 
     def send(self, sender: str, message: T, now_us: int, settings: RadioSettings, size_bytes: int = 0) -> None:
         """Sends to all receivers but the sender. Draws two random numbers a receiver, whatever the settings."""
-        self._credit_bit -= 8 * size_bytes
-        too_much = settings.bandwidth_bit_s > 0 and self._credit_bit < 0
-        if too_much:
-            self._credit_bit += 8 * size_bytes
+        too_much = settings.bandwidth_bit_s > 0 and self._credit_bit <= 0
+        if not too_much:
+            self._credit_bit -= 8 * size_bytes  # below 0 for a message that takes longer than a burst
         for receiver in self._receivers:
             if receiver == sender:
                 continue

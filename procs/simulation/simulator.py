@@ -40,6 +40,7 @@ from procs.simulation.physics.world import World
 Starts = dict[str, tuple[float, float, float]]
 _STOPPED: Wheels = (0.0, 0.0, 0.0)
 _BATTERY_US = US_PER_S  # from one message about the batteries to the next
+_LEAST_PERIOD_S, _MOST_PERIOD_S = 0.001, 10.0
 _FIELD_TICKS = 100  # from one message with the measures of the field to the next, for readers that come late
 
 
@@ -68,6 +69,26 @@ class SimulatorConfig(Config):
     """Wheels and ball handling stop when their command is older."""
     stuck_wheels: dict[str, tuple[Literal[1, 2, 3], ...]] = {}
     """Faults: wheels that do not turn, by robot: `{cyan3: [2]}`."""
+
+    @field_validator("period_s")
+    @classmethod
+    def _a_period(cls, period_s: float) -> float:
+        if period_s and not _LEAST_PERIOD_S <= period_s <= _MOST_PERIOD_S:
+            raise ValueError(f"it should be 0, or from {_LEAST_PERIOD_S:g} to {_MOST_PERIOD_S:g}")
+        return period_s
+
+    @field_validator("ball")
+    @classmethod
+    def _fits_into_goals(cls, ball: BallModel, info: ValidationInfo) -> BallModel:
+        """Refuses goals into which no ball can go; the field has been checked before."""
+        if "field" in info.data:
+            for name in ("goal_width_m", "goal_height_m", "goal_depth_m"):
+                measure_m = getattr(info.data["field"], name)
+                if measure_m <= 2 * ball.radius_m:
+                    raise ValueError(
+                        f"no ball of {2 * ball.radius_m:g} m goes into a goal with a {name} of {measure_m:g} m"
+                    )
+        return ball
 
     @field_validator("starts")
     @classmethod

@@ -2,6 +2,7 @@
 
 from lcmtypes.soccer import ground_truth_t, true_robot_t
 from procs.model.field import Field
+from procs.model.geometry import plausible
 from procs.model.robot import number_in, team_in
 
 Line = list[tuple[str, str]]
@@ -24,6 +25,8 @@ def field_drawing(truth: ground_truth_t, columns: int, rows: int, field: Field |
     letters = [[_ground(column, row, width, height) for column in range(width)] for row in range(height)]
 
     def put(x_m: float, y_m: float, letter: str, style: str) -> None:
+        if not plausible(x_m, y_m):
+            return
         column = round((x_m / length_m + 0.5) * (width - 1))
         row = round((0.5 - y_m / width_m) * (height - 1))
         if 0 <= column < width and 0 <= row < height:

@@ -53,7 +53,7 @@ def _draw_goal(canvas: Canvas, field: Field, side: float) -> None:
     for row in range(5):
         x_m = front_m + side * row * mesh_m
         canvas.line((x_m, -half_m), (x_m, half_m), 0.01, NET)
-    columns = round(field.goal_width_m / mesh_m)
+    columns = max(1, round(field.goal_width_m / mesh_m))
     for column in range(columns + 1):
         y_m = -half_m + column * field.goal_width_m / columns
         canvas.line((front_m, y_m), (back_m, y_m), 0.01, NET)

@@ -12,6 +12,7 @@ from typing import TypeVar
 import cv2
 import numpy as np
 
+from fwk.model.errors import PlanError
 from fwk.testing import MemorySystem, settings_in, system_of
 from lcmtypes.core import picture_t
 from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t
@@ -34,6 +35,7 @@ _ROBOT = "cyan3"
 _LAUNCH = (
     "include: {file}\nname: sight\ncomponents: {{world/pictures: {{use: procs.view.pictures, config: {config}}}}}\n"
 )
+_SUFFIXES = (".png", ".jpg")
 _FINE = "{format: png, rate_hz: 0}"
 
 
@@ -106,6 +108,8 @@ def main() -> None:
     parser.add_argument("--time", type=float, default=9.0, help="logical time in s; default: 9")
     parser.add_argument("--seed", type=int, default=7, help="seed of the match; default: 7")
     asked = parser.parse_args()
+    if asked.file.suffix not in _SUFFIXES:
+        raise SystemExit(f"'{asked.file}' ends in '{asked.file.suffix}'; it should end in {' or '.join(_SUFFIXES)}")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "sight.yaml"
         file.write_text(_LAUNCH.format(file=asked.launch, config=_FINE))
@@ -113,6 +117,8 @@ def main() -> None:
             settings = settings_in(str(file), f"{asked.robot}/camera")
         except KeyError as error:
             raise SystemExit(f"{asked.launch}: no camera of {asked.robot}") from error
+        except PlanError as error:
+            raise SystemExit(str(error)) from error
         system = system_of(str(file), seed=asked.seed)
         while system.now_us < asked.time * 1e6:
             system.tick()
@@ -120,7 +126,8 @@ def main() -> None:
         picture = sight_in(system, asked.robot, mirror, settings["ball"]["radius_m"])
     if picture is None:
         raise SystemExit(f"no picture of {asked.robot}/image")
-    cv2.imwrite(str(asked.file), picture)
+    if not cv2.imwrite(str(asked.file), picture):
+        raise SystemExit(f"'{asked.file}' cannot be written; does its folder exist?")
 
 
 if __name__ == "__main__":

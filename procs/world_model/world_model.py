@@ -122,7 +122,7 @@ class WorldModel(Component):
 
     def loop(self) -> None:
         config, now_s = self.config, self.clock.now_s
-        passed_s = self.clock.since_s(self._last_us) if self._last_us else self.clock.period_s
+        passed_s = self.clock.since_s(self._last_us) if self._last_us else self.clock.iteration_s
         self._last_us = self.clock.now_us
         known = self.pose.refreshed
         view = OwnView(self.pose.value, self.odometry.value, known, config.shake_s_m, self._view, passed_s)
@@ -193,7 +193,7 @@ class WorldModel(Component):
             age_s = self._age_s(message.ball_capture_us or message.header.time_us)
             self._see(self._sightings(mate.name, seen, message.ball_z_m, mate.position_m, age_s))
             told_s = self.clock.since_s(message.header.time_us)
-            kicked_just_now = 0.0 <= (message.header.time_us - message.kick_us) / US_PER_S < self.clock.period_s
+            kicked_just_now = 0.0 <= (message.header.time_us - message.kick_us) / US_PER_S < self.clock.iteration_s
             if mate.holds_ball and mate.localized and told_s <= _STALE_S and not kicked_just_now:
                 self._ball.hold(mate.name, *held_by(mate, self._mouth_m), told_s)
 
@@ -292,10 +292,10 @@ class WorldModel(Component):
         caught_or_lost = self.team_message.value.ball_held != self.kicker_state.value.ball_held
         if caught_or_lost or self._kicks.untold:
             return True  # mates have to know at once
-        half_tick_s = self.clock.period_s / 2
+        half_tick_s = self.clock.iteration_s / 2
         passed_s = self.clock.since_s(self._sent_us) + half_tick_s
         if not self.ball_percept.refreshed:
-            passed_s -= self.clock.period_s
+            passed_s -= self.clock.iteration_s
         return passed_s >= self.config.message_period_s
 
     def _tell_team(self, view: OwnView) -> None:

@@ -1,5 +1,7 @@
 """The match drawn in characters."""
 
+import math
+
 import pytest
 
 from lcmtypes.soccer import ground_truth_t, true_robot_t
@@ -46,3 +48,13 @@ def test_robot_is_drawn_with_its_stated_number_and_team() -> None:
     letters = [piece for line in field_drawing(made, 53, 30) for piece in line]
     style = next(style for text, style in letters if "4" in text)
     assert style == next(style for text, style in letters if "3" in text)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, 1e300])
+def test_places_that_cannot_be_are_not_drawn(value: float) -> None:
+    world = truth()
+    world.ball_x_m = world.robots[0].y_m = value
+    letters = "".join(text for line in field_drawing(world, 53, 30) for text, _ in line)
+    assert "3" in letters
+    assert "●" not in letters
+    assert "1" not in letters

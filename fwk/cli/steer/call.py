@@ -81,12 +81,15 @@ def _called(
 
 
 def _owner(name: str, chosen: str | None) -> str:
-    """Returns the component that carries the commands out, with its state."""
+    """Returns the component that carries the commands out, with its state, and whether the run is paused."""
     with runs.gateway(chosen) as gateway:
         rows = gateway.ask("channels")["channels"]
     owner = next(row["writer"] for row in rows if row["channel"] == f"{name}@{ANSWERS}")
-    (component,) = ask(chosen, "status", names=[owner])["components"]
-    return f"{owner} is {component['state']}{': ' if component['reason'] else ''}{component['reason']}"
+    status = ask(chosen, "status", names=[owner])
+    (component,) = status["components"]
+    state = f"{owner} is {component['state']}{': ' if component['reason'] else ''}{component['reason']}"
+    paused = f", but the run is paused after tick {status['tick']}; 'fwk resume' goes on" if status["paused"] else ""
+    return state + paused
 
 
 def _encoded(gateway: Client, name: str, fields: list[str], chosen: str | None) -> bytes:

@@ -49,15 +49,23 @@ class Ball:
         """True if the ball is above the ground."""
         return self.z_m > 0.0 or self.vz_m_s > 0.0
 
-    def fall(self, duration_s: float) -> None:
-        """Lets gravity act on a ball in flight for a while; on the ground it bounces."""
+    def fall(self, duration_s: float, floor_m: float = 0.0, bounce: float | None = None) -> bool:
+        """Lets gravity act on a ball in flight for a while; returns whether it has reached the floor.
+
+        Args:
+            duration_s: the while.
+            floor_m: height of the floor, which is not above the ball.
+            bounce: share of the vertical speed after a bounce; None: that of the ground.
+        """
         if not self.flies:
-            return
+            return False
         self.z_m += self.vz_m_s * duration_s - GRAVITY_M_S2 * duration_s**2 / 2
         self.vz_m_s -= GRAVITY_M_S2 * duration_s
-        if self.z_m <= 0.0:
-            self._bounce_off()
-        self._shape.filter = ball_filter(self.z_m > self._robot_height_m, self.z_m > self._goal_height_m)
+        landed = self.z_m <= floor_m
+        if landed:
+            self._bounce_off(floor_m, self._bounce if bounce is None else bounce)
+        self._shape.filter = ball_filter(self.z_m >= self._robot_height_m, self.z_m > self._goal_height_m)
+        return landed
 
     def rub(self, duration_s: float) -> None:
         """Lets the ground act on the ball for a while, unless it flies."""
@@ -71,7 +79,7 @@ class Ball:
         self.z_m, self.vz_m_s = max(0.0, height_m), vz_m_s
         self.body.velocity = (vx_m_s, vy_m_s)
         if not self.z_m and vz_m_s < 0.0:
-            self._bounce_off()
+            self._bounce_off(0.0, self._bounce)
 
     def put(self, x_m: float, y_m: float) -> None:
         """Lays the ball down at rest."""
@@ -82,7 +90,7 @@ class Ball:
         self.body.angular_velocity = 0.0
         self.friction.roll(0.0, 0.0)
 
-    def _bounce_off(self) -> None:
-        """Sends the ball, which has reached the ground, up again; a slow one stays there."""
-        rebound_m_s = -self._bounce * self.vz_m_s
-        self.z_m, self.vz_m_s = 0.0, rebound_m_s if rebound_m_s > self._least_rebound_m_s else 0.0
+    def _bounce_off(self, floor_m: float, bounce: float) -> None:
+        """Sends the ball, which has reached a floor, up again; a slow one stays there."""
+        rebound_m_s = -bounce * self.vz_m_s
+        self.z_m, self.vz_m_s = floor_m, rebound_m_s if rebound_m_s > self._least_rebound_m_s else 0.0

@@ -17,6 +17,10 @@ class Crossbar:
         self._high_m = field.goal_height_m + field.post_diameter_m
         self._before_m = 0.0
 
+    def begin_at(self, x_m: float) -> None:
+        """Takes the place of a ball that was put down, so that its way there crosses no goal."""
+        self._before_m = x_m
+
     def stops(self, x_m: float, y_m: float) -> bool:
         """Acts on the ball, which is now here, after each step; returns whether the bar sends it back."""
         ball = self._ball

@@ -31,16 +31,16 @@ class Noise(BaseModel):
     """Share of the ball handling's force that is missing; the handling loses a ball that asks for more."""
     wheel_scale_sd: float = Field(default=0.0, ge=0.0, le=1.0)
     """Relative error of each wheel's encoder, constant in a match. Twente: a constant factor for each axis."""
-    wheel_noise_sqrt_s: float = Field(default=0.0, ge=0.0)
+    wheel_noise_sqrt_s: float = Field(default=0.0, ge=0.0, le=10.0)
     """Relative error of the way that a wheel measures in one second, with steady speed. Tick by tick it is larger by
     the square root of the ticks in a second."""
-    compass_noise_sqrt_s: float = Field(default=0.0, ge=0.0)
+    compass_noise_sqrt_s: float = Field(default=0.0, ge=0.0, le=10.0)
     """Error in rad of the compass averaged over one second."""
-    compass_drift_sd_rad: float = Field(default=0.0, ge=0.0)
+    compass_drift_sd_rad: float = Field(default=0.0, ge=0.0, le=10.0)
     """Drift of the compass after one minute; it grows with the square root of time."""
-    gyro_noise_sqrt_s: float = Field(default=0.0, ge=0.0)
+    gyro_noise_sqrt_s: float = Field(default=0.0, ge=0.0, le=10.0)
     """Error in rad of the heading that the gyro measures in one second."""
-    gyro_bias_sd_rad_s: float = Field(default=0.0, ge=0.0)
+    gyro_bias_sd_rad_s: float = Field(default=0.0, ge=0.0, le=10.0)
     """Constant error of the yaw rate; 0.1 degrees a second are usual for cheap gyros."""
 
 

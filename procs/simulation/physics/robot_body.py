@@ -10,6 +10,7 @@ from procs.simulation.physics.arena import HULL, HULL_FILTER, ROBOT, ROBOT_FILTE
 from procs.simulation.physics.bodies import State
 from procs.simulation.physics.drive import Drive
 from procs.simulation.physics.settings import ContactSettings
+from procs.simulation.physics.start_places import Pose
 
 _HULL_CORNERS = 16
 _MOUTH_LIP_M = 0.005
@@ -55,6 +56,20 @@ class Robot:
         """Sets the robot down at rest."""
         self.body.position, self.body.angle = (x_m, y_m), heading_rad
         self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
+
+    def gap_m(self, pose: Pose, x_m: float, y_m: float) -> float:
+        """Returns the distance from a point to the hull of the robot if it stood at a pose; negative inside."""
+        away_x, away_y = x_m - pose.x_m, y_m - pose.y_m
+        cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+        ahead_m, aside_m = cos * away_x + sin * away_y, abs(cos * away_y - sin * away_x)
+        round_m = math.hypot(ahead_m, aside_m) - self.radius_m
+        if ahead_m <= self.mouth_x_m:
+            return max(round_m, ahead_m - self.mouth_x_m)
+        half_mouth_m = math.sqrt(self.radius_m**2 - self.mouth_x_m**2)
+        if aside_m <= half_mouth_m:
+            return ahead_m - self.mouth_x_m
+        beside_mouth = aside_m * self.mouth_x_m <= half_mouth_m * ahead_m
+        return math.hypot(ahead_m - self.mouth_x_m, aside_m - half_mouth_m) if beside_mouth else round_m
 
     def move(self, now_us: int, duration_s: float, state: State) -> tuple[float, float, float]:
         """Turns the motors for the coming step of the physics engine.

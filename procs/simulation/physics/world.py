@@ -15,7 +15,7 @@ from procs.simulation.physics.battery import Battery
 from procs.simulation.physics.bodies import Bodies, State
 from procs.simulation.physics.contacts import Contacts
 from procs.simulation.physics.crossbar import Crossbar
-from procs.simulation.physics.drive import Drive
+from procs.simulation.physics.drive import Drive, longest_step_s
 from procs.simulation.physics.events import Event, Kind, LineJudge
 from procs.simulation.physics.kick_mechanism import Kicker, Push
 from procs.simulation.physics.mouth import Mouth
@@ -24,8 +24,10 @@ from procs.simulation.physics.robot_body import Robot
 from procs.simulation.physics.room import Room
 from procs.simulation.physics.settings import PhysicsSettings
 from procs.simulation.physics.start_places import Pose, starting_pose
+from procs.simulation.physics.tops import Tops
 
 _FREE_M = 0.02  # between robot and ball when the field crew puts it down
+_PRESSED_M = 0.002  # as much as bodies that touch may overlap
 
 
 class World:
@@ -65,6 +67,7 @@ class World:
         self._field = field or Field()
         self._robot = robot
         self._physics = physics or PhysicsSettings()
+        self._step_s = min(self._physics.step_s, longest_step_s(robot, self._physics.drive))
         noise = noise or Noise()
         self._space = pymunk.Space()
         self._space.collision_slop = 0.001  # pymunk's default is meant for pixels: here it would be 10 cm
@@ -85,6 +88,7 @@ class World:
             mouth = Mouth(body, self.ball, self._physics.handling, 1.0 - noise.handling_loss)
             self.kickers[name] = Kicker(mouth, robot, self._physics.kicker, noise, rng)
             self.batteries[name] = Battery(self._physics.battery)
+        self._tops = Tops(list(self.robots.values()), robot.height_m, self.ball, self._physics.contacts)
         self._contacts = Contacts(self._space, list(self.robots.values()))
         self._judge = LineJudge(self._field, self.ball.radius_m)
         self._wheel_load_n = robot.mass_kg * GRAVITY_M_S2 / 3
@@ -116,7 +120,7 @@ class World:
         for name, pose in self._starts.items():
             self.robots[name].put(*pose)
             self.batteries[name].refill()
-        self._clear_ball(self._middles(), self._middles())
+        self._clear_ball(self._starts, self._middles())
 
     def place_robot(self, name: str, pose: Pose) -> bool:
         """Sets a robot down at rest, at the nearest place that is free; a ball that lies in its way is put beside it.
@@ -126,7 +130,7 @@ class World:
         others = [Point(*robot.body.position) for robot in self.robots.values() if robot.name != name]
         radius_m = self._robot.radius_m
         place = self._room.nearest(Point(pose.x_m, pose.y_m), radius_m, others, 2 * radius_m)
-        if place is None or not self._clear_ball([place], [*others, place]):
+        if place is None or not self._clear_ball({name: Pose(*place, pose.heading_rad)}, [*others, place]):
             return False
         self.robots[name].put(*place, pose.heading_rad)
         return True
@@ -153,7 +157,7 @@ class World:
 
     def advance(self, duration_us: int) -> list[Event]:
         """Moves the world on; returns the events, sorted by kind and robot."""
-        steps = max(1, math.ceil(duration_us / (self._physics.step_s * 1e6)))
+        steps = max(1, math.ceil(duration_us / (self._step_s * 1e6)))
         start_us = self.time_us
         touched: dict[str, Event] = {}
         events: list[Event] = []
@@ -169,10 +173,15 @@ class World:
         """Returns the middles of all robots."""
         return [Point(*robot.body.position) for robot in self.robots.values()]
 
-    def _clear_ball(self, places: Sequence[Point], robots: Sequence[Point]) -> bool:
-        """Puts a ball that lies where robots are set down beside all `robots`; returns False if there is no room."""
-        ball = self.ball
-        if ball.flies or all(math.dist(place, ball.body.position) >= self._robot.mouth_m for place in places):
+    def _clear_ball(self, poses: Mapping[str, Pose], robots: Sequence[Point]) -> bool:
+        """Puts a ball that lies where robots are set down beside all `robots`; returns False if there is no room.
+
+        A ball that touches no more than a robot's hull, as in its mouth, stays where it is.
+        """
+        ball, least_m = self.ball, self.ball.radius_m - _PRESSED_M
+        if ball.flies or all(
+            self.robots[name].gap_m(pose, *ball.body.position) >= least_m for name, pose in poses.items()
+        ):
             return True
         return self._put_ball(Point(*ball.body.position), robots)
 
@@ -180,6 +189,7 @@ class World:
         place = self._room.nearest(wanted, self.ball.radius_m, robots, self._clearance_m)
         if place is not None:
             self.ball.put(*place)
+            self._bar.begin_at(place.x_m)
         return place is not None
 
     def _drain_batteries(self, duration_s: float) -> None:
@@ -209,11 +219,13 @@ class World:
         events += [self._ball_event(Kind.KICK, name) for name, push in pushes.items() if push.kicked]
         self.ball.rub(duration_s)
         self._space.step(duration_s)
-        self.ball.fall(duration_s)
+        fallen_on = self._tops.fall(duration_s)
         states = self._bodies.states()
         if self._bar.stops(*states[0][:2]):
             states = self._bodies.states()
         touching = self._contacts.take_touches() | pushes.keys()
+        if fallen_on is not None:
+            touching.add(fallen_on)
         if touching:
             x_m, y_m, _, vx_m_s, vy_m_s, _ = states[0]
             speed_m_s = math.hypot(vx_m_s, vy_m_s)

@@ -25,6 +25,7 @@ class TurnerConfig(Config):
     names: list[str] = []
     table: dict[str, int] = {}
     fixed: Inner = Field(Inner(), frozen=True)
+    fixed_table: dict[str, float] = Field({}, frozen=True)
 
 
 class Turner(Component):
@@ -63,6 +64,12 @@ def test_a_fixed_setting_stays_as_it_is(settings: RunSettings) -> None:
     with pytest.raises(RequestError, match=re.escape(text)):
         settings.check(["a/turner.fixed.deep=2", "a/turner.gain=1"])
     assert [new.said for new in settings.check(["a/turner.fixed.deep=1"])] == [{"fixed.deep": 1}]
+
+
+def test_a_fixed_mapping_gets_no_new_key(settings: RunSettings) -> None:
+    text = "a/turner: 'fixed_table.new' cannot change during a run; set it in the launch file and restart"
+    with pytest.raises(RequestError, match=re.escape(text)):
+        settings.check(["a/turner.fixed_table.new=2"])
 
 
 def test_a_row_has_all_columns(settings: RunSettings) -> None:

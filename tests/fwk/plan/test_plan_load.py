@@ -372,6 +372,18 @@ def test_former_every_ticks_of_a_template_is_noted_once(load: Load) -> None:
     assert notes == [f"it.yaml:1: a1/odometer (and 1 more): {text}"]
 
 
+@pytest.mark.parametrize(
+    ("keys", "noted"),
+    [("offset: 1", True), ("offset: 0", False), ("every: 1\n    offset: 1", False), ("every: 2\n    offset: 1", False)],
+)
+def test_an_offset_without_every_is_noted(load: Load, keys: str, noted: bool) -> None:
+    notes: list[str] = []
+    load(f"{CAMERA}    {keys}\n")
+    load_plan("it.yaml", LaunchOptions(), notes.append)
+    text = "it.yaml:4: it/odometer: 'offset' changes nothing, because it iterates in each tick; add 'every'"
+    assert [note for note in notes if "offset" in note] == ([text] if noted else [])
+
+
 @pytest.mark.parametrize("value", ["0", "two", "1.5", "true", "1000001", "[2]"])
 def test_former_every_ticks_is_checked(load: Load, value: str) -> None:
     with pytest.raises(

@@ -105,6 +105,7 @@ wait for it; give it a stage, or let a component with a stage read the frames
 such as 1 or '{number}'
         it.yaml:11: it/j: offset is 'one'; it should be a whole number from 0 on, of at most 6 digits, \
 such as 1 or '{number}'
+        it.yaml:12: it/k: it is continuous and takes part in no tick; leave 'offset' out
         """,
         """
         components:
@@ -118,6 +119,7 @@ such as 1 or '{number}'
           it/h: {use: restless:Sun, every: 2}
           it/i: {use: restless:Staged, every: 2, offset: -1}
           it/j: {use: restless:Staged, offset: one}
+          it/k: {use: restless:Right, offset: 2}
         --- restless.py
         from fwk import Component, Image, TimeSource
         class Both(Component):

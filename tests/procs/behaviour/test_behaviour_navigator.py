@@ -39,6 +39,16 @@ def test_navigator_drives_in_its_frame_within_its_acceleration() -> None:
     assert state.distance_m == pytest.approx(5.0)
 
 
+def test_navigator_in_every_other_tick_accelerates_as_fast() -> None:
+    bench = Bench(Navigator, "cyan2/navigator", every=2)
+    for _ in range(6):
+        put(bench, "world_model", localized=True)
+        put(bench, "odometry")
+        put(bench, "drive_target", x_m=5.0)
+        bench.iterate()
+    assert [command.vx_m_s for command in bench.port("motor_command").sent] == pytest.approx([0.3, 0.6, 0.9])
+
+
 def changes_m_s(held: bool, x_m: float) -> list[float]:
     """Returns the change of the speed in the first ticks towards a target; the robot faces along x."""
     bench = Bench(Navigator, "cyan2/navigator")

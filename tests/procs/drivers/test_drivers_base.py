@@ -51,6 +51,17 @@ def test_base_accelerates_within_its_limits() -> None:
     assert drive(base, 20, vx_m_s=1.0, enabled=True) == pytest.approx((1.0, 0.0, 0.0))
 
 
+@pytest.mark.parametrize("every", [1, 2, 5])
+def test_acceleration_does_not_depend_on_the_ticks_between(every: int) -> None:
+    base = bench(acceleration_m_s2=1.0, every=every)
+    for _ in range(40):
+        message = motor_command_t()
+        message.header.time_us = base.time_us
+        base.port("motor_command").put(message, vx_m_s=3.0, enabled=True)
+        base.iterate()
+    assert commanded(base).vx_m_s == pytest.approx(40 * 0.05 * 1.0)
+
+
 def test_limits_change_during_the_run() -> None:
     base = bench(acceleration_m_s2=2.0)
     before = drive(base, 5, vx_m_s=2.0, enabled=True).vx_m_s

@@ -39,6 +39,27 @@ def test_robot_on_the_ball_pushes_it_aside(x_m: float) -> None:
     assert math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s) < 0.1
 
 
+@pytest.mark.parametrize(
+    ("bearing_rad", "distance_m", "stays"),
+    [(0.0, 0.33, True), (0.0, 0.3, False), (0.0, 0.22, False), (math.pi, 0.37, True), (math.pi, 0.34, False)],
+)
+def test_robot_overlaps_no_ball_at_its_hull(bearing_rad: float, distance_m: float, stays: bool) -> None:
+    """A ball in the mouth may stay there, as close as the flat front lets it."""
+    world = bench()
+    world.port("place_ball").put(x_m=4.0, y_m=3.0)
+    world.iterate()
+    x_m, y_m = 4.0 - distance_m * math.cos(bearing_rad), 3.0 - distance_m * math.sin(bearing_rad)
+    world.port("place_robot").put(robot="cyan1", x_m=x_m, y_m=y_m)
+    world.iterate()
+    truth = world.port("ground_truth").sent[-1]
+    at_m = (truth.ball_x_m, truth.ball_y_m)
+    if stays:
+        assert at_m == pytest.approx((4.0, 3.0), abs=1e-3)
+    else:
+        assert math.dist(at_m, (x_m, y_m)) > 0.36
+    assert (truth.robots[0].x_m, truth.robots[0].y_m) == pytest.approx((x_m, y_m), abs=1e-3)
+
+
 def test_ball_is_thrown() -> None:
     world = bench()
     world.port("place_ball").put(x_m=2.0, z_m=0.5, vx_m_s=3.0, vz_m_s=2.0)
@@ -55,7 +76,10 @@ def test_ball_is_thrown() -> None:
         ("place_robot", {"robot": "cyan1", "x_m": 13.0}, "(13, 0) is outside the walls; x is at most 12 m, y 8 m"),
         ("place_robot", {"robot": "cyan1", "heading_rad": math.nan}, "heading_rad is nan; it should be a number"),
         ("place_ball", {"y_m": math.inf}, "(0, inf) is outside the walls; x is at most 12 m, y 8 m"),
-        ("place_ball", {"vx_m_s": 99.0}, "vx_m_s is 99.0; it should be at most 15"),
+        ("place_ball", {"vx_m_s": 99.0}, "vx_m_s is 99.0; it should be from -15 to 15"),
+        ("place_ball", {"vz_m_s": -99.0}, "vz_m_s is -99.0; it should be from -15 to 15"),
+        ("place_ball", {"z_m": -0.5}, "z_m is -0.5; it should be from 0 to 5"),
+        ("place_ball", {"z_m": math.nan}, "z_m is nan; it should be from 0 to 5"),
     ],
 )
 def test_impossible_place_is_refused(port: str, values: dict[str, object], reason: str) -> None:

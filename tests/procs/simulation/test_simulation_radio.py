@@ -143,6 +143,16 @@ def test_interrupted_links_lose_messages_in_a_row() -> None:
     assert len(lost) / runs > 8
 
 
+def test_an_interruption_does_not_end_because_another_begins() -> None:
+    """With five a second, each of a second on average, hardly one message in 150 meets none: exp(-5)."""
+    bench = radio(outages_1_min=300.0, outage_s=1.0)
+    for _ in range(1200):
+        say(bench, "cyan1")
+        bench.iterate()
+    heard = sum(len(sent.messages) for robot in TEAM for sent in bench.port("inboxes", robot).sent)
+    assert heard / (4 * 1200) < 0.03
+
+
 @pytest.mark.parametrize("realism", ["friendly", "realistic", "harsh"])
 def test_longest_messages_arrive_like_the_shortest(realism: Realism) -> None:
     """A team that sends ten times a second is far from the limit of the channel."""
@@ -176,3 +186,13 @@ def test_narrow_channel_loses_what_is_beyond_it() -> None:
     heard = sum(len(each.messages) for robot in TEAM for each in bench.port("inboxes", robot).sent) / 4
     assert heard * size_bits == pytest.approx(40_000 * (10 + 0.2), rel=0.1)
     assert sent
+
+
+def test_very_narrow_channel_passes_what_it_can() -> None:
+    """A message that takes longer than a fifth of a second passes, too, and the channel is busy as long as it takes."""
+    size_bits = 8 * len(team_message_t().encode())
+    bench = radio(bandwidth_bit_s=2.0 * size_bits)
+    for _ in range(400):
+        say(bench, "cyan1")
+        bench.iterate()
+    assert len(bench.port("inboxes", "cyan2").sent) == pytest.approx(2.0 * 20, abs=2)

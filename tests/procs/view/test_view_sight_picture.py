@@ -62,3 +62,19 @@ def test_command_draws_the_camera_of_a_match(tmp_path: Path, monkeypatch: pytest
     monkeypatch.setattr("sys.argv", [*words[:-4], "--robot", "cyan9", "--time", "0.1"])
     with pytest.raises(SystemExit, match="no camera of cyan9"):
         sight_picture.main()
+
+
+@pytest.mark.parametrize(
+    ("words", "mistake"),
+    [
+        (["sight.xyz"], "'sight.xyz' ends in '.xyz'; it should end in .png or .jpg"),
+        (["nowhere/sight.png", "--launch", "soccer-1v1.yaml", "--robot", "cyan1"], "'nowhere/sight.png' cannot be"),
+        (["sight.png", "--launch", "soccer-1vs1.yaml"], "there is no 'soccer-1vs1.yaml' to include"),
+        (["sight.png", "--robot", "cyan9"], "soccer.yaml: no camera of cyan9"),
+    ],
+)
+def test_command_says_what_is_wrong(words: list[str], mistake: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.argv", ["sight_picture", *words, "--time", "0.2"])
+    with pytest.raises(SystemExit) as raised:
+        sight_picture.main()
+    assert mistake in str(raised.value)

@@ -91,6 +91,10 @@ def test_extreme_values_are_drawn_or_left_out_but_never_fatal() -> None:
     assert VIEW.draw(wild, beliefs={"cyan1": belief}).shape == (VIEW.height_px, 960, 3)
 
 
+def test_goal_that_is_deeper_than_wide_is_drawn() -> None:
+    assert TopView(320, Field(border_m=10.0, goal_depth_m=10.0, goal_width_m=1.2)).width_px == 320
+
+
 def test_picture_of_the_newest_messages() -> None:
     belief = world_model_t()
     belief.localized, belief.x_m, belief.y_m = True, 5.0, 5.0

@@ -109,6 +109,15 @@ def test_a_command_to_a_stopped_component_never_begins(launch: Launch, folder: P
     assert "byte for byte" in run.fwk("replay", str(log), "--verify")
 
 
+def test_an_unanswered_call_tells_that_the_run_is_paused(launch: Launch, folder: Path, ports: PortBlock) -> None:
+    run = started(launch, ports)
+    run.fwk("pause")
+    said = run.fwk("call", "r/lift", "height_m=1", "--timeout", "0.5", code=1)
+    assert "r/lifter is running, but the run is paused after tick " in said
+    assert "'fwk resume' goes on" in said
+    run.end()
+
+
 def test_a_command_fails_when_its_component_is_stopped(launch: Launch, folder: Path, ports: PortBlock) -> None:
     file = folder / "launch/lift.yaml"
     file.write_text(file.read_text().replace('Lifter" }', 'Lifter", config: { ticks: 1000000 } }'))

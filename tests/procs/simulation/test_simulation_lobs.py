@@ -1,0 +1,71 @@
+"""A ball in the air above robots and goals."""
+
+import math
+
+import numpy as np
+import pytest
+
+from procs.model.ball import BALL
+from procs.model.robot import ROBOT
+from procs.simulation.physics.events import Event, Kind
+from procs.simulation.physics.start_places import Pose
+from procs.simulation.physics.world import World
+
+TICK_US = 40_000
+AWAY_M = ROBOT.radius_m + BALL.radius_m
+
+
+def world_of(heading_rad: float = 0.0) -> World:
+    return World(["cyan1"], np.random.default_rng(1), starts={"cyan1": Pose(0.0, 0.0, heading_rad)})
+
+
+def run(world: World, ticks: int) -> list[Event]:
+    return [event for _ in range(ticks) for event in world.advance(TICK_US)]
+
+
+@pytest.mark.parametrize("heading_rad", [0.0, 2.0, math.pi])
+@pytest.mark.parametrize("vx_m_s", [-1.0, 0.0, 3.0])
+@pytest.mark.parametrize("x_m", [0.0, 0.1, 0.2, 0.24])
+def test_ball_that_falls_on_a_robot_rolls_off(x_m: float, vx_m_s: float, heading_rad: float) -> None:
+    world = world_of(heading_rad)
+    world.ball.put(x_m, 0.0)
+    world.throw_ball(1.5, (vx_m_s, 0.0, 0.0))
+    for _ in range(150):
+        world.advance(10_000)
+        away_m = math.dist(world.ball.body.position, world.robots["cyan1"].body.position)
+        inside = world.ball.z_m < ROBOT.height_m - 1e-6 and away_m < ROBOT.mouth_m
+        assert not inside, f"{away_m:.3f} m from the middle, {world.ball.z_m:.3f} m high"
+    assert math.dist(world.ball.body.position, world.robots["cyan1"].body.position) > AWAY_M - 0.05
+    assert world.ball.z_m < ROBOT.height_m
+
+
+def test_ball_bounces_off_the_top_of_a_robot() -> None:
+    world = world_of()
+    world.ball.put(0.0, 0.0)
+    world.throw_ball(ROBOT.height_m + 0.5, (0.0, 0.0, 0.0))
+    heights_m = []
+    for _ in range(60):
+        world.advance(10_000)
+        heights_m.append(world.ball.z_m)
+    lowest = int(np.argmin(heights_m[:40]))
+    assert heights_m[lowest] == pytest.approx(ROBOT.height_m, abs=0.03)
+    assert max(heights_m[lowest:]) == pytest.approx(ROBOT.height_m + 0.5**2 * 0.5, abs=0.02)
+
+
+def test_robot_on_which_the_ball_falls_has_touched_it() -> None:
+    world = world_of()
+    world.ball.put(0.1, 0.0)
+    world.throw_ball(ROBOT.height_m + 0.1, (0.0, 0.0, 0.0))
+    assert {(event.kind, event.robot) for event in run(world, 4)} == {(Kind.TOUCH, "cyan1")}
+    assert world.last_touch == "cyan1"
+
+
+@pytest.mark.parametrize("height_m", [0.8, 0.9, 1.1])
+def test_ball_put_down_behind_a_bar_has_not_hit_it(height_m: float) -> None:
+    world = world_of()
+    world.place_ball(5.0, 0.0)
+    run(world, 1)
+    world.place_ball(11.3, 0.5)
+    world.throw_ball(height_m, (0.0, 0.0, 0.0))
+    run(world, 1)
+    assert world.ball.body.position == pytest.approx((11.3, 0.5))
