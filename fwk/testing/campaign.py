@@ -1,36 +1,29 @@
 """Campaigns: many seeded runs at the same time, with a file for each result; an interrupted campaign resumes."""
 
 import json
-import multiprocessing
 import os
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager, suppress
+from collections import defaultdict
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from concurrent.futures import CancelledError, Executor, Future, as_completed
+from contextlib import suppress
 from dataclasses import dataclass
-from importlib import import_module
 from inspect import signature
 from pathlib import Path
 from typing import Any, cast, overload
 
 from fwk.lcm.type_registry import put_first, use_types_of
-from fwk.model.parent_death import die_with_parent
 from fwk.plan.classes import find_object
+from fwk.testing.executors import CampaignError
 
 Work = Callable[..., Any]
 """Plays a launch file for a logical time with a seed; returns the measurements as plain values for JSON.
 
 Settings that the launch file's own are overridden with are a fourth argument, if there are some.
 """
-INSTALL = "pip install 'fwk[eval]'"
-CONNECT_S = 5.0
-"""Longest time for the connection to a scheduler."""
+_SHOWN, _NAMED = 300, 10  # letters of a failure, and seeds of a cause, that a message shows
 _ABSENT = "there is none"
 _EMPTY: tuple[Any, ...] = ("", {}, [])
 """Values without a measurement."""
-
-
-class CampaignError(RuntimeError):
-    """A campaign that cannot be played."""
 
 
 class FolderError(CampaignError):
@@ -146,10 +139,9 @@ class Campaign:
         try:
             for future in as_completed(running):
                 seed = running.pop(future)  # a future keeps its result
-                try:
-                    text = _text_of(future.result())
-                except Exception as error:
-                    failures[seed] = f"{type(error).__name__}: {error}"
+                text, failure = _outcome(future)
+                if failure:
+                    failures[seed] = failure
                     continue
                 _write(self._file(seed), text)
                 self._flaws[seed] = ""
@@ -161,8 +153,7 @@ class Campaign:
             for future in running:
                 future.cancel()
         if failures:
-            causes = "; ".join(f"seed {seed}: {cause}" for seed, cause in sorted(failures.items()))
-            raise CampaignError(f"{len(failures)} of {count} runs failed: {causes}")
+            raise CampaignError(f"{len(failures)} of {count} runs failed: {_causes(failures)}")
 
     def _flaw(self, seed: int) -> str:
         """Returns why a seed has no result that counts, or an empty text; a file is read once, as it may be large."""
@@ -173,6 +164,37 @@ class Campaign:
 
     def _file(self, seed: int) -> Path:
         return self._folder / f"seed-{seed}.json"
+
+
+def _outcome(future: Future[Any]) -> tuple[str, str]:
+    """Returns the text of a run's result, or why it has none."""
+    try:
+        error = future.exception()
+        if error is None:
+            return _text_of(future.result()), ""
+    except CancelledError:
+        return "", "the connection to the cluster was lost"
+    except (CampaignError, TypeError, ValueError, RecursionError) as flaw:  # what JSON does not know
+        error = flaw
+    said = " ".join(str(error).split())
+    name = "" if isinstance(error, CampaignError) else type(error).__name__
+    return "", ": ".join(filter(None, (name, f"{said[:_SHOWN]} ..." if len(said) > _SHOWN else said)))
+
+
+def _causes(failures: Mapping[int, str]) -> str:
+    """Returns the causes of failures, each with its seeds."""
+    seeds = defaultdict[str, list[int]](list)
+    for seed, cause in sorted(failures.items()):
+        seeds[cause].append(seed)
+    return "; ".join(f"{_listed(each)}: {cause}" for cause, each in seeds.items())
+
+
+def _listed(seeds: Sequence[int]) -> str:
+    """Returns the seeds, the first of them if they are many: `seeds 1, 2, 3`."""
+    if len(seeds) == 1:
+        return f"seed {seeds[0]}"
+    more = f" and {len(seeds) - _NAMED} more" if len(seeds) > _NAMED else ""
+    return f"seeds {', '.join(map(str, seeds[:_NAMED]))}{more}"
 
 
 def _text_of(result: Any) -> str:
@@ -228,35 +250,3 @@ def _write(file: Path, text: str) -> None:
             partial.unlink()
         cure = "make room for it there, or choose another folder"
         raise FolderError(f"{file} cannot be written: {error.strerror}; {cure}") from error
-
-
-@contextmanager
-def executor_of(jobs: int, cluster: str = "") -> Iterator[Executor]:
-    """Yields `jobs` processes of this machine, or the workers of the Dask cluster whose scheduler has an address.
-
-    Ctrl-C ends the processes of this machine at once.
-
-    Raises:
-        CampaignError: Dask is not installed, or there is no scheduler at that address.
-    """
-    if not cluster:
-        others = multiprocessing.active_children()
-        with ProcessPoolExecutor(jobs, initializer=die_with_parent, initargs=(os.getpid(),)) as pool:
-            try:
-                yield pool
-            except KeyboardInterrupt:  # runs that have begun, or wait in the pool, would be played to their end
-                for worker in multiprocessing.active_children():
-                    if worker not in others:
-                        worker.kill()
-                raise
-        return
-    try:
-        dask: Any = import_module("distributed")
-    except ImportError as error:
-        raise CampaignError(f"a cluster needs Dask, which is not installed; type: {INSTALL}") from error
-    try:
-        client = dask.Client(cluster, timeout=CONNECT_S)
-    except (OSError, ValueError) as error:
-        raise CampaignError(f"no Dask scheduler at {cluster}: {error}") from error
-    with client, client.get_executor(pure=False) as workers:
-        yield workers

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from fwk.testing import launch_plan, system_of
-from fwk.testing.campaign import INSTALL
+from fwk.testing.executors import INSTALL
 from procs.evaluation.beliefs import Samples, believed
 from procs.evaluation.conduct import conducted
 from procs.evaluation.delays import delays

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from fwk.testing.campaign import INSTALL
+from fwk.testing.executors import INSTALL
 from procs.evaluation.plots import plot
 from procs.evaluation.table import Row, as_csv, as_json, as_text
 from procs.scenarios.scenario import BOOK, outcome, read

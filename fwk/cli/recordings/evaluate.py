@@ -17,7 +17,8 @@ from fwk.cli.recordings.user_folders import use_folders
 from fwk.model.errors import PlanError
 from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
-from fwk.testing.campaign import Campaign, CampaignError, Evaluation, FolderError, executor_of
+from fwk.testing.campaign import Campaign, Evaluation, FolderError
+from fwk.testing.executors import CampaignError, executor_of
 
 
 def eval(  # noqa: A001 - the name of the command

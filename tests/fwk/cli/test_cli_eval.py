@@ -18,8 +18,9 @@ from typer.testing import CliRunner
 
 from fwk.cli.commands import app
 from fwk.cli.recordings import evaluate
-from fwk.testing import campaign
-from fwk.testing.campaign import Campaign, CampaignError, FolderError, executor_of
+from fwk.testing import executors
+from fwk.testing.campaign import Campaign, FolderError
+from fwk.testing.executors import CampaignError, executor_of
 from tests.fwk.cli.cli_eval_parts import measured
 
 LAUNCH = """
@@ -258,7 +259,7 @@ class Queue(Executor):
 
 KILLED = """
 import os, signal
-from fwk.testing.campaign import executor_of
+from fwk.testing.executors import executor_of
 with executor_of(1) as workers:
     print(workers.submit(os.getpid).result(), flush=True)
     workers.submit(signal.pause).result()
@@ -276,7 +277,8 @@ def test_runs_of_a_killed_evaluation_end_with_it() -> None:
 INTERRUPTED = """
 import os, signal, sys, threading
 from pathlib import Path
-from fwk.testing.campaign import Campaign, executor_of
+from fwk.testing.campaign import Campaign
+from fwk.testing.executors import executor_of
 signal.signal(signal.SIGINT, signal.default_int_handler)
 def work(file, time_s, seed):
     return signal.pause() if seed else os.getpid()
@@ -308,7 +310,7 @@ def test_two_dask_workers_play_the_seeds(launch: Path) -> None:
 
 
 def test_address_without_a_scheduler_is_named(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(campaign, "CONNECT_S", 0.1)
+    monkeypatch.setattr(executors, "CONNECT_S", 0.1)
     code, _, said = evaluated(str(launch), "--seeds", "1", "--cluster", "tcp://127.0.0.1:9")
     assert (code, "no Dask scheduler at tcp://127.0.0.1:9" in said) == (1, True)
 
