@@ -50,6 +50,12 @@ def changed_modules(plan: Plan) -> dict[str, str]:
     return changed
 
 
+def hash_of_module(name: str) -> str:
+    """Returns the hash of a module's file here; empty if there is no such module."""
+    file = _file_of(name)
+    return _hash_of(file) if file else ""
+
+
 def different_modules(plans: tuple[Plan, Plan]) -> list[str]:
     """Returns the names of the modules that both of two runs imported, but with different content."""
     first, second = plans[0].modules, plans[1].modules

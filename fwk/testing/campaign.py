@@ -1,36 +1,35 @@
 """Campaigns: many seeded runs at the same time, with a file for each result; an interrupted campaign resumes."""
 
+import fcntl
 import json
-import multiprocessing
 import os
+from collections import defaultdict
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from concurrent.futures import CancelledError, Executor, Future, as_completed
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
-from importlib import import_module
+from dataclasses import dataclass, field
+from functools import lru_cache
 from inspect import signature
 from pathlib import Path
 from typing import Any, cast, overload
 
 from fwk.lcm.type_registry import put_first, use_types_of
-from fwk.model.parent_death import die_with_parent
 from fwk.plan.classes import find_object
+from fwk.plan.what_ran import hash_of_module
+from fwk.testing.executors import CampaignError
 
 Work = Callable[..., Any]
 """Plays a launch file for a logical time with a seed; returns the measurements as plain values for JSON.
 
 Settings that the launch file's own are overridden with are a fourth argument, if there are some.
 """
-INSTALL = "pip install 'fwk[eval]'"
-CONNECT_S = 5.0
-"""Longest time for the connection to a scheduler."""
+_hash_in_use = lru_cache(maxsize=None)(hash_of_module)
+"""A process goes on with a module as it was when it first used it, whatever becomes of the file."""
+_SHOWN, _NAMED = 300, 10  # letters of a failure, and seeds of a cause, that a message shows
+_CODE = "code.json"
 _ABSENT = "there is none"
 _EMPTY: tuple[Any, ...] = ("", {}, [])
 """Values without a measurement."""
-
-
-class CampaignError(RuntimeError):
-    """A campaign that cannot be played."""
 
 
 class FolderError(CampaignError):
@@ -47,13 +46,24 @@ class Evaluation:
     """Folders of the launch file's modules and message types, besides the installed ones."""
     sets: tuple[str, ...] = ()
     """Settings to override: `PATH=VALUE`."""
+    modules: Mapping[str, str] = field(default_factory=dict)
+    """Modules that the process must have, with the hashes of their files; a worker of a cluster may have others."""
 
     def __call__(self, file: str, time_s: float, seed: int) -> Any:
-        """Plays a run and returns its measurements."""
+        """Plays a run and returns its measurements.
+
+        Raises:
+            CampaignError: this process has other modules, or the evaluation takes no settings.
+        """
         for folder in self.folders:
             use_types_of(Path(folder))
         put_first(self.folders)
         work = cast(Work, find_object(self.use, self.folders))
+        other = [name for name, digest in self.modules.items() if _hash_in_use(name) != digest]
+        if other:
+            more = f" and {len(other) - 1} more" if len(other) > 1 else ""
+            cure = "copy the code to its machine if it has a copy of its own, and restart the worker"
+            raise CampaignError(f"a worker has other code of {other[0]}{more}; {cure}")
         if not self.sets:
             return work(file, time_s, seed)
         if len(signature(work).parameters) < 4:
@@ -83,18 +93,22 @@ class Results(Sequence[Any]):
 class Campaign:
     """Results of the runs of one launch file in a folder, a file a seed."""
 
-    def __init__(self, folder: Path, about: Mapping[str, Any]) -> None:
+    def __init__(self, folder: Path, about: Mapping[str, Any], code: str = "") -> None:
         """Opens or begins a campaign; `about` states launch file, logical time and evaluation.
+
+        The digest `code` of the modules is kept with each result.
 
         Raises:
             CampaignError: the folder holds another campaign.
             FolderError: what the folder says about its campaign is damaged, or cannot be read or written.
             OSError: there is no folder, and none can be made.
         """
-        self._folder = folder
+        self._folder, self._code = folder, code
         self._flaws: dict[int, str] = {}
         """Flaw of the result of each seed whose file was read; an empty text if the result is whole."""
         folder.mkdir(parents=True, exist_ok=True)
+        self._codes = _codes_in(folder / _CODE)
+        """Code that each seed's result is of."""
         note, text = folder / "campaign.json", json.dumps(dict(about), sort_keys=True)
         old = _read(note)
         if old is None:
@@ -122,6 +136,35 @@ class Campaign:
         found = {self._file(seed): self._flaw(seed) for seed in seeds}
         return {file: flaw for file, flaw in found.items() if flaw not in ("", _ABSENT)}
 
+    def of_other_code(self, seeds: Iterable[int]) -> list[int]:
+        """Returns the seeds whose whole results are of other code than today's; one without a note counts as today's.
+
+        Raises:
+            FolderError: a result cannot be read.
+        """
+        return [each for each in seeds if self._codes.get(each, self._code) != self._code and not self._flaw(each)]
+
+    @contextmanager
+    def alone(self) -> Iterator[None]:
+        """Keeps others from playing into the folder; a file system without locks lets all play.
+
+        Raises:
+            CampaignError: another process plays into it.
+        """
+        opened = os.open(self._folder, os.O_RDONLY)
+        try:
+            fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            os.close(opened)
+            cure = "wait until it has ended, or choose another folder"
+            raise CampaignError(f"another evaluation is playing into {self._folder}; {cure}") from error
+        except OSError:
+            pass
+        try:
+            yield
+        finally:
+            os.close(opened)
+
     def results(self, seeds: Iterable[int]) -> "Results":
         """Returns the results of the seeds that have a whole one, in the order of the seeds.
 
@@ -146,13 +189,13 @@ class Campaign:
         try:
             for future in as_completed(running):
                 seed = running.pop(future)  # a future keeps its result
-                try:
-                    text = _text_of(future.result())
-                except Exception as error:
-                    failures[seed] = f"{type(error).__name__}: {error}"
+                text, failure = _outcome(future)
+                if failure:
+                    failures[seed] = failure
                     continue
                 _write(self._file(seed), text)
-                self._flaws[seed] = ""
+                self._flaws[seed], self._codes[seed] = "", self._code
+                _write(self._folder / _CODE, json.dumps(self._codes))
                 yield seed
         except KeyboardInterrupt:  # the executor ends all runs; one that is cancelled before makes it print an error
             running = {}
@@ -161,8 +204,7 @@ class Campaign:
             for future in running:
                 future.cancel()
         if failures:
-            causes = "; ".join(f"seed {seed}: {cause}" for seed, cause in sorted(failures.items()))
-            raise CampaignError(f"{len(failures)} of {count} runs failed: {causes}")
+            raise CampaignError(f"{len(failures)} of {count} runs failed: {_causes(failures)}")
 
     def _flaw(self, seed: int) -> str:
         """Returns why a seed has no result that counts, or an empty text; a file is read once, as it may be large."""
@@ -173,6 +215,43 @@ class Campaign:
 
     def _file(self, seed: int) -> Path:
         return self._folder / f"seed-{seed}.json"
+
+
+def _outcome(future: Future[Any]) -> tuple[str, str]:
+    """Returns the text of a run's result, or why it has none."""
+    try:
+        error = future.exception()
+        if error is None:
+            return _text_of(future.result()), ""
+    except CancelledError:
+        return "", "the connection to the cluster was lost"
+    except (CampaignError, TypeError, ValueError, RecursionError) as flaw:  # what JSON does not know
+        error = flaw
+    said = " ".join(str(error).split())
+    name = "" if isinstance(error, CampaignError) else type(error).__name__
+    return "", ": ".join(filter(None, (name, f"{said[:_SHOWN]} ..." if len(said) > _SHOWN else said)))
+
+
+def _causes(failures: Mapping[int, str]) -> str:
+    """Returns the causes of failures, each with its seeds."""
+    seeds = defaultdict[str, list[int]](list)
+    for seed, cause in sorted(failures.items()):
+        seeds[cause].append(seed)
+    return "; ".join(f"seed{'s' * (len(each) > 1)} {listed(each)}: {cause}" for cause, each in seeds.items())
+
+
+def listed(seeds: Sequence[int]) -> str:
+    """Returns the seeds, the first of them if they are many: `1, 2, 3`."""
+    more = f" and {len(seeds) - _NAMED} more" if len(seeds) > _NAMED else ""
+    return ", ".join(map(str, seeds[:_NAMED])) + more
+
+
+def _codes_in(file: Path) -> dict[int, str]:
+    """Returns the code of each seed's result; a file that is damaged tells nothing."""
+    try:
+        return {int(seed): str(code) for seed, code in json.loads(_read(file) or b"{}").items()}
+    except (ValueError, AttributeError, RecursionError):
+        return {}
 
 
 def _text_of(result: Any) -> str:
@@ -228,35 +307,3 @@ def _write(file: Path, text: str) -> None:
             partial.unlink()
         cure = "make room for it there, or choose another folder"
         raise FolderError(f"{file} cannot be written: {error.strerror}; {cure}") from error
-
-
-@contextmanager
-def executor_of(jobs: int, cluster: str = "") -> Iterator[Executor]:
-    """Yields `jobs` processes of this machine, or the workers of the Dask cluster whose scheduler has an address.
-
-    Ctrl-C ends the processes of this machine at once.
-
-    Raises:
-        CampaignError: Dask is not installed, or there is no scheduler at that address.
-    """
-    if not cluster:
-        others = multiprocessing.active_children()
-        with ProcessPoolExecutor(jobs, initializer=die_with_parent, initargs=(os.getpid(),)) as pool:
-            try:
-                yield pool
-            except KeyboardInterrupt:  # runs that have begun, or wait in the pool, would be played to their end
-                for worker in multiprocessing.active_children():
-                    if worker not in others:
-                        worker.kill()
-                raise
-        return
-    try:
-        dask: Any = import_module("distributed")
-    except ImportError as error:
-        raise CampaignError(f"a cluster needs Dask, which is not installed; type: {INSTALL}") from error
-    try:
-        client = dask.Client(cluster, timeout=CONNECT_S)
-    except (OSError, ValueError) as error:
-        raise CampaignError(f"no Dask scheduler at {cluster}: {error}") from error
-    with client, client.get_executor(pure=False) as workers:
-        yield workers

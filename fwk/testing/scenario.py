@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
-from pydantic import AllowInfNan, BaseModel, ConfigDict, PositiveFloat
+from pydantic import AllowInfNan, BaseModel, ConfigDict, PositiveFloat, Strict
 
 from fwk.testing.expression import Expression, Words
 
@@ -22,7 +22,7 @@ class Expectations(BaseModel):
     """Each must hold in every tick."""
     at_end: list[str] = []
     """Each must hold in the last tick."""
-    time_s: Annotated[PositiveFloat, AllowInfNan(False)] = 10.0
+    time_s: Annotated[PositiveFloat, AllowInfNan(False), Strict()] = 10.0
     """Limit of the logical time. Without `always` and `at_end` a scenario ends once all the rest has happened."""
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from fwk.testing import launch_plan, system_of
-from fwk.testing.campaign import INSTALL
+from fwk.testing.executors import INSTALL
 from procs.evaluation.beliefs import Samples, believed
 from procs.evaluation.conduct import conducted
 from procs.evaluation.delays import delays
@@ -22,10 +22,17 @@ from procs.model.frames import Floats
 def measured(
     file: str, time_s: float, seed: int, sets: Sequence[str] = ()
 ) -> dict[str, list[float] | list[list[float]]]:
-    """Plays one piece of `time_s`, with settings that are overridden, and returns the samples of all measures."""
+    """Plays one piece of `time_s`, with settings that are overridden, and returns the samples of all measures.
+
+    Raises:
+        ValueError: the piece would have no tick.
+    """
     period_s = launch_plan(file, tuple(sets)).period_us / 1e6
+    ticks = round(time_s / period_s)
+    if not ticks:
+        raise ValueError(f"{time_s:g} s is shorter than a tick of {period_s:g} s")
     system = system_of(file, seed=seed, sets=sets)
-    system.tick(round(time_s / period_s))
+    system.tick(ticks)
     piece = piece_of(system.sent, period_s)
     return {name: samples.tolist() for name, samples in samples_of(piece).items()}
 

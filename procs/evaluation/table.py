@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields
 
@@ -13,6 +14,7 @@ from procs.model.frames import Floats
 
 _REDRAWS = 1000
 _NEVER = 3.0  # events that were expected at most, with a probability of 95 %, if none was seen
+_Z = 1.96  # of a normal distribution, 95 % lie within so many deviations
 
 
 def rms(samples: Floats) -> float:
@@ -33,6 +35,11 @@ def high_95(samples: Floats) -> float:
 def mean(samples: Floats) -> float:
     """Returns the mean of samples (n)."""
     return float(np.mean(samples)) if len(samples) else np.nan
+
+
+def share(samples: Floats) -> float:
+    """Share of the trials (n) that succeeded: each is 1 or 0, and tells as much as the others."""
+    return mean(samples)
 
 
 def median(samples: Floats) -> float:
@@ -106,7 +113,7 @@ MEASURES = [
     Measure("radio, volume of a team", ratio, "Mbit/s", "<= 2.2"),
     Measure("wrong pose believed", rate, "/1000 min", "0"),
     Measure("pose jumps", rate, "/min", "<= 0.05"),
-    Measure("kidnapped, found within 10 s", mean, "share", ">= 0.99"),
+    Measure("kidnapped, found within 10 s", share, "share", ">= 0.99"),
     Measure("kidnapped, time until found", median, "s", "<= 2"),
     Measure(f"{PARTICLES}pose known", mean, "share", ""),
     Measure(f"{PARTICLES}pose, position", rms, "m", ""),
@@ -114,26 +121,26 @@ MEASURES = [
     Measure(f"{PARTICLES}pose, heading", rms, "rad", ""),
     Measure(f"{PARTICLES}wrong pose believed", rate, "/1000 min", ""),
     Measure(f"{PARTICLES}pose jumps", rate, "/min", ""),
-    Measure(f"{PARTICLES}kidnapped, found within 10 s", mean, "share", ""),
+    Measure(f"{PARTICLES}kidnapped, found within 10 s", share, "share", ""),
     Measure(f"{PARTICLES}kidnapped, time until found", median, "s", ""),
     Measure(f"{AVERAGE}ball moving, position", rms, "m", ""),
     Measure(f"{AVERAGE}ball rolling freely, position", rms, "m", ""),
     Measure(f"{AVERAGE}ball resting, position", rms, "m", ""),
     Measure("collisions above 1 m/s", rate, "/min", "<= 1"),
     Measure("collisions above 3 m/s", rate, "/min", "0"),
-    Measure("distance violated at restarts", mean, "share", "0"),
-    Measure("half violated at kick-offs", mean, "share", "0"),
-    Measure("restarts taken within 7 s", mean, "share", ">= 0.95"),
-    Measure("passes controlled by the receiver", mean, "share", ">= 0.80"),
-    Measure("captures that bounce", mean, "share", ""),
+    Measure("distance violated at restarts", share, "share", "0"),
+    Measure("half violated at kick-offs", share, "share", "0"),
+    Measure("restarts taken within 7 s", share, "share", ">= 0.95"),
+    Measure("passes controlled by the receiver", share, "share", ">= 0.80"),
+    Measure("captures that bounce", share, "share", ""),
     Measure("ball free", mean, "share", ""),
     Measure("shots", rate, "/min", ""),
     Measure("goals", rate, "/min", ""),
     Measure("goals of cyan", rate, "/min", ""),
     Measure("goals of magenta", rate, "/min", ""),
     Measure("goals of cyan less those of magenta", ratio, "/min", ""),
-    Measure("won by cyan", mean, "share", ""),
-    Measure("lost by cyan", mean, "share", ""),
+    Measure("won by cyan", share, "share", ""),
+    Measure("lost by cyan", share, "share", ""),
 ]
 """Rows of the table in their order."""
 
@@ -155,7 +162,7 @@ def rows_of(pieces: Sequence[Samples], measures: Sequence[Measure] = MEASURES, s
     """Computes the table; the interval comes from redrawing whole pieces, as samples of a piece depend on each other.
 
     A single piece gives no interval: its limits are NaN. The interval of events that were never seen ends at the rate
-    with which seeing none has a probability of 5 %.
+    with which seeing none has a probability of 5 %. Trials that all ended alike have Wilson's interval.
     """
     rng = np.random.default_rng(seed)
     draws = rng.integers(len(pieces), size=(_REDRAWS, len(pieces)))
@@ -171,8 +178,18 @@ def rows_of(pieces: Sequence[Samples], measures: Sequence[Measure] = MEASURES, s
         if measure.statistic is rate and value == 0.0:
             low, high = 0.0, _NEVER / sum(float(each[:, 1].sum()) for each in samples)
         count = sum(map(len, samples))
+        if measure.statistic is share and value in (0.0, 1.0):
+            low, high = wilson(round(value * count), count)
         rows.append(Row(measure.name, value, low, high, count, measure.unit, measure.goal))
     return rows
+
+
+def wilson(successes: int, trials: int) -> tuple[float, float]:
+    """Returns the limits between which the probability of a success lies with 95 % (Wilson's score interval, 1927)."""
+    part, square = successes / trials, _Z**2 / trials
+    middle = (part + square / 2) / (1 + square)
+    half = _Z * math.sqrt(part * (1 - part) / trials + square / (4 * trials)) / (1 + square)
+    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 def as_text(rows: Sequence[Row]) -> str:

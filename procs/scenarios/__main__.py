@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from difflib import get_close_matches
 from pathlib import Path
 
 from fwk.testing import ExpressionError
@@ -20,7 +21,7 @@ def main() -> int:
         try:
             scenarios[path] = read(path)
         except (ScenarioError, OSError) as error:
-            print(error, file=sys.stderr)
+            print(_said(error, file), file=sys.stderr)
             wrong = True
     if wrong:
         return 2
@@ -39,6 +40,13 @@ def main() -> int:
             sep="\n       ",
         )
     return 2 if wrong else int(failed > 0)
+
+
+def _said(error: ScenarioError | OSError, file: Path) -> str:
+    if isinstance(error, FileNotFoundError):
+        near = get_close_matches(file.name.removesuffix(".yaml"), [each.stem for each in BOOK.glob("*.yaml")], 1)
+        return f"{file}: there is no such scenario" + (f"; did you mean '{near[0]}'?" if near else "")
+    return f"{file}: {error.strerror}" if isinstance(error, OSError) else str(error)
 
 
 if __name__ == "__main__":

@@ -1,32 +1,27 @@
 """Evaluation of the book of scenarios for `fwk eval`: plays each scenario once with a seed, and reports all seeds."""
 
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from fwk.testing.campaign import INSTALL
+from fwk.testing.executors import INSTALL
 from procs.evaluation.plots import plot
-from procs.evaluation.table import Row, as_csv, as_json, as_text
+from procs.evaluation.table import Row, as_csv, as_json, as_text, wilson
 from procs.scenarios.scenario import BOOK, outcome, read
-
-_Z = 1.96  # of a normal distribution, 95 % lie within so many deviations
 
 ALL = "all scenarios"
 """Name of the row that counts every scenario."""
 
 
-def played(_file: str, time_s: float, seed: int) -> dict[str, list[str]]:
+def played(_file: str, _time_s: float, seed: int) -> dict[str, list[str]]:
     """Plays every scenario of the book, each with its own system; returns the conditions that do not hold by scenario.
 
-    Args:
-        time_s: limit of a scenario's logical time, besides its own, in s.
-        seed: seed of each scenario instead of its own.
+    The `seed` replaces that of each scenario. Each is played to its own limit of time: one that is cut off before
+    would count as failed.
     """
     found = {}
     for path in sorted(BOOK.glob("*.yaml")):
         scenario = read(path)
-        changes = {"seed": seed, "time_s": min(time_s, scenario.time_s)}
-        found[path.stem] = outcome(scenario.model_copy(update=changes)).broken
+        found[path.stem] = outcome(scenario.model_copy(update={"seed": seed})).broken
     return found
 
 
@@ -48,13 +43,5 @@ def report(results: Sequence[Mapping[str, Sequence[str]]], folder: Path) -> str:
 
 
 def _row(name: str, outcomes: Sequence[bool]) -> Row:
-    share, (low, high) = sum(outcomes) / len(outcomes), interval(sum(outcomes), len(outcomes))
+    share, (low, high) = sum(outcomes) / len(outcomes), wilson(sum(outcomes), len(outcomes))
     return Row(name, share, low, high, len(outcomes), "share", "1")
-
-
-def interval(successes: int, trials: int) -> tuple[float, float]:
-    """Returns the limits between which the probability of a success lies with 95 % (Wilson's score interval, 1927)."""
-    share, square = successes / trials, _Z**2 / trials
-    middle = (share + square / 2) / (1 + square)
-    half = _Z * math.sqrt(share * (1 - share) / trials + square / (4 * trials)) / (1 + square)
-    return max(0.0, middle - half), min(1.0, middle + half)

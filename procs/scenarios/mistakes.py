@@ -6,12 +6,31 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any
 
+import yaml
 from pydantic import BaseModel, ValidationError
 
 from procs.model.field import Point
 from procs.model.robot import TEAM_NUMBERS, team_of
 from procs.simulation.physics.room import Room
 from procs.simulation.simulator import SimulatorConfig
+
+
+class UniqueKeys(yaml.SafeLoader):
+    """Reads YAML and refuses a key that is given twice, of which PyYAML keeps the last alone."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        """Returns the values by their keys.
+
+        Raises:
+            ConstructorError: a key is given twice.
+        """
+        seen = set[str]()
+        for key, _ in node.value:
+            if isinstance(key, yaml.ScalarNode) and key.value in seen:
+                raise yaml.constructor.ConstructorError(None, None, f"'{key.value}' is given twice", key.start_mark)
+            seen.add(str(key.value))
+        return super().construct_mapping(node, deep)
+
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
@@ -64,6 +83,16 @@ def team_mistakes(robots: Sequence[str], settings: Mapping[str, Mapping[str, Any
     for name in robots:
         if team_of(name) not in TEAM_NUMBERS and name not in named:
             yield f"robots: '{name}' plays for no team; names such as cyan1 and magenta2 tell it, or settings 'players'"
+
+
+def command_mistakes(commands: Sequence[Any], everyone: Sequence[str], time_s: float) -> Iterator[str]:
+    """Yields the actions that come too late, or that concern a robot that is not there."""
+    for place, action in enumerate(commands):
+        if action.at_s >= time_s:
+            yield f"commands.{place}: at_s is {action.at_s:g}; the scenario ends at {time_s:g} s"
+        robot = (action.place_robot or {}).get("robot")
+        if robot and robot not in everyone:
+            yield f"commands.{place}: place_robot: no robot '{robot}'; {right_name(robot, everyone)}"
 
 
 def place_mistakes(places: Mapping[str, Sequence[float]], config: SimulatorConfig) -> Iterator[str]:

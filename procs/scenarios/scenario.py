@@ -1,10 +1,10 @@
 """A soccer scenario: robots, start, actions of the field crew, and what must happen."""
 
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Annotated, Any, get_type_hints
 
 import yaml
-from pydantic import FiniteFloat, NonNegativeInt, ValidationError
+from pydantic import FiniteFloat, NonNegativeInt, Strict, ValidationError
 
 from fwk import Component, Config
 from fwk.testing import Expectations, Expression, ExpressionError, MemorySystem, Verdict, play
@@ -21,6 +21,8 @@ from procs.referee.referee import Referee, RefereeConfig
 from procs.scenarios.crew import Action, Crew
 from procs.scenarios.dummy import Dummy
 from procs.scenarios.mistakes import (
+    UniqueKeys,
+    command_mistakes,
     field_mistakes,
     place_mistakes,
     robot_mistakes,
@@ -55,6 +57,7 @@ _SEEING: dict[str, type[Component]] = {
 }
 _MIRROR = {"size_px": 360, "view_angle_deg": 86.0}  # as in msl-percepts.yaml
 _RADIO = {"messages": "{team}*/team_message", "inboxes": "{team}*/team_inbox"}
+_Number = Annotated[FiniteFloat, Strict()]
 
 
 class ScenarioError(ValueError):
@@ -70,9 +73,9 @@ class Scenario(Expectations):
     """Robots with all their components; their percepts are drawn from the truth, with errors."""
     dummies: list[str] = []
     """Robots that stand still."""
-    places: dict[str, tuple[FiniteFloat, FiniteFloat, FiniteFloat]] = {}
+    places: dict[str, tuple[_Number, _Number, _Number]] = {}
     """Start of robots: x in m, y in m, heading in rad (world frame); others take their default place."""
-    ball: dict[str, FiniteFloat] = {}
+    ball: dict[str, _Number] = {}
     """Place and velocity of the ball once play has begun, as in `place_ball_t`; empty: the kick-off."""
     rules: dict[str, Any] = {}
     """Settings of the referee."""
@@ -82,7 +85,7 @@ class Scenario(Expectations):
     """Further settings, by component: `cyan2/agent`."""
     commands: list[Action] = []
     """Actions of the field crew."""
-    seed: NonNegativeInt = 1
+    seed: Annotated[NonNegativeInt, Strict()] = 1
     """Seed of the run."""
 
 
@@ -94,7 +97,10 @@ def read(path: Path) -> Scenario:
         OSError: the file cannot be read.
     """
     try:
-        content = yaml.safe_load(path.read_text())
+        content = yaml.load(path.read_text(), UniqueKeys)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        raise ScenarioError(f"{path}:{mark.line + 1 if mark else 1}: {error.problem or error.context}") from error
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise ScenarioError(f"{path}: {error}") from error
     if not isinstance(content, dict):
@@ -128,9 +134,7 @@ def _mistakes(scenario: Scenario) -> list[str]:
             Expression(text, WORDS)
         except ExpressionError as error:
             found.append(str(error))
-    for place, action in enumerate(scenario.commands):
-        if action.at_s >= scenario.time_s:
-            found.append(f"commands.{place}: at_s is {action.at_s:g}; the scenario ends at {scenario.time_s:g} s")
+    found += command_mistakes(scenario.commands, [*robots, *scenario.dummies], scenario.time_s)
     if not found:
         found += place_mistakes(scenario.places, _simulator_settings(scenario))
     if not found:

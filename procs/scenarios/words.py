@@ -1,7 +1,7 @@
 """Words of soccer in the conditions of scenarios: `ball`, `play`, `distance(cyan2, ball)`, `x(magenta1)` ..."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from numbers import Real
 from typing import Any
 
@@ -73,9 +73,23 @@ def _place(newest: Newest, what: Any) -> Point:
     raise KeyError(f"no robot '{what}'; {right_name(str(what), [robot.name for robot in robots])}")
 
 
+class _Robots(list[str]):
+    """Names of robots, which knows those on the field: asking for another one is a mistake."""
+
+    def __init__(self, names: Iterable[str], everyone: list[str]) -> None:
+        super().__init__(names)
+        self._everyone = everyone
+
+    def __contains__(self, name: object) -> bool:
+        if name not in self._everyone:
+            raise KeyError(f"no robot '{name}'; {right_name(str(name), self._everyone)}")
+        return super().__contains__(name)
+
+
 @reads_messages
 def _touches(newest: Newest) -> list[str]:
-    return [event.robot for event in newest("world/match_events").events if event.kind in (4, 6)]
+    names = [event.robot for event in newest("world/match_events").events if event.kind in (4, 6)]
+    return _Robots(names, [robot.name for robot in newest("world/ground_truth").robots])
 
 
 @reads_messages

@@ -8,6 +8,8 @@ from procs.world_model.robot_tracks import any_near, without_known
 from procs.world_model.seen import Seen
 from procs.world_model.team import Places
 
+_DRIFTS_S = 0.5  # a mate that is silent for longer may be anywhere, and explains only what stands near its last place
+
 
 @dataclass(frozen=True)
 class OpponentSettings:
@@ -40,6 +42,6 @@ def strangers(seen: Seen, team: Places, seen_s: float, settings: OpponentSetting
         ]
     )
     # Mates hardly ever name a robot of the team, as they have left them out themselves.
-    if any_near(places_m, spreads_m2, team.rows_at(seen_s), settings.mate_radius_m):
-        chosen &= without_known(seen.positions_m, covariances_m2, *team.at(seen_s), settings.mate_radius_m)
+    if any_near(places_m, spreads_m2, team.rows_at(seen_s, _DRIFTS_S), settings.mate_radius_m):
+        chosen &= without_known(seen.positions_m, covariances_m2, *team.at(seen_s, _DRIFTS_S), settings.mate_radius_m)
     return seen if chosen.all() else seen.only(chosen)

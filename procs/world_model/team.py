@@ -1,5 +1,6 @@
 """The newest message of each team mate about itself."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -69,21 +70,24 @@ class Places:
         made._mates = self._mates[:count]
         return made
 
-    def rows_at(self, time_s: float) -> list[PlaceRow]:
-        """Returns k probable positions with velocities, and with covariances, which grow away from the messages."""
+    def rows_at(self, time_s: float, drifts_s: float = math.inf) -> list[PlaceRow]:
+        """Returns k probable positions with velocities, and with covariances, which grow away from the messages.
+
+        They grow for `drifts_s` at most.
+        """
         rows = []
         for told_s, x_m, y_m, vx_m_s, vy_m_s, xx_m2, xy_m2, yx_m2, yy_m2 in self._mates:
             passed_s = time_s - told_s
             extrapolated_s = min(_EXTRAPOLATED_S, max(-_EXTRAPOLATED_S, passed_s))
-            drift_m = _LEAST_M + _DRIFT_M_S * abs(passed_s)
+            drift_m = _LEAST_M + _DRIFT_M_S * min(drifts_s, abs(passed_s))
             drift_m2 = drift_m * drift_m
             x_m, y_m = x_m + vx_m_s * extrapolated_s, y_m + vy_m_s * extrapolated_s
             rows.append((x_m, y_m, vx_m_s, vy_m_s, xx_m2 + drift_m2, xy_m2, yx_m2, yy_m2 + drift_m2))
         return rows
 
-    def at(self, time_s: float) -> tuple[Floats, Floats]:
+    def at(self, time_s: float, drifts_s: float = math.inf) -> tuple[Floats, Floats]:
         """Returns the same as arrays: positions (k, 2) and covariances (k, 2, 2)."""
-        rows = np.array(self.rows_at(time_s)).reshape(-1, 8)
+        rows = np.array(self.rows_at(time_s, drifts_s)).reshape(-1, 8)
         return rows[:, :2], rows[:, 4:].reshape(-1, 2, 2)
 
 

@@ -160,10 +160,15 @@ class WorldModel(Component):
         """Returns the messages of mates that arrived in this tick and are not older than known ones."""
         told = []
         for message in (message for inbox in self.team_inbox.fresh for message in inbox.messages):
-            mate = mate_of(message, now_s)
+            mate = mate_of(message, now_s) if self._is_of_team(message.robot) else None
             if mate is not None and mate.name != self._robot and (mate := self._team.tell(mate)):
                 told.append((message, mate))
         return told if self.config.use_team_sight else []
+
+    def _is_of_team(self, robot: str) -> bool:
+        """Returns whether a sender may be a mate: robots of the other team, whose radio is heard, are not."""
+        player = player_of(robot, self.config.players)
+        return not (player and self._own_team) or TEAM_NUMBERS[player.team] == self._own_team
 
     def _follow_ball(
         self, view: OwnView, team: Sequence[PlaceRow], told: list[tuple[team_message_t, Mate]], passed_s: float

@@ -2,12 +2,13 @@
 
 import hashlib
 import os
+import re
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -17,7 +18,11 @@ from fwk.cli.recordings.user_folders import use_folders
 from fwk.model.errors import PlanError
 from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
-from fwk.testing.campaign import Campaign, CampaignError, Evaluation, FolderError, executor_of
+from fwk.plan.what_ran import imported_modules
+from fwk.testing.campaign import Campaign, Evaluation, FolderError, listed
+from fwk.testing.executors import CampaignError, executor_of
+
+_MOST = 100_000  # seeds: what is known of each is kept in memory
 
 
 def eval(  # noqa: A001 - the name of the command
@@ -51,12 +56,15 @@ def eval(  # noqa: A001 - the name of the command
         typer.echo(f"error: {file} names no 'evaluation: module:function'", err=True)
         raise typer.Exit(BAD_INPUT)
     use_folders(plan.folders)
-    numbers, folder = _numbers(seeds), out or Path(f"eval-{plan.name}")
+    numbers, folder, modules = _numbers(seeds), out or Path(f"eval-{plan.name}"), _modules(plan)
     about = {"file": plan.file, "time_s": time_s, "by": plan.evaluation, "plan": _digest(plan)}
-    work = Evaluation(plan.evaluation, plan.folders, tuple(sets or ()))
+    work = Evaluation(plan.evaluation, plan.folders, tuple(sets or ()), modules if cluster else {})
     try:
         with _refused_by(folder):
-            campaign = Campaign(folder, about | ({"sets": sets} if sets else {}))
+            campaign = Campaign(folder, about | ({"sets": sets} if sets else {}), _short(sorted(modules.items())))
+            former = campaign.of_other_code(numbers)
+        if former:
+            typer.echo(f"note: {_formerly(former)}; remove their files from {folder} to play them again", err=True)
         failure = _play(campaign, work, file, time_s, numbers, jobs, cluster)
         results, text = campaign.results(numbers), ""
         if results:
@@ -86,6 +94,7 @@ def _play(campaign: Campaign, work: Evaluation, file: str, time_s: float, seeds:
     label = f"{len(left)} of {len(seeds)} runs"
     try:
         with (
+            campaign.alone(),
             executor_of(min(jobs or os.cpu_count() or 1, len(left)), cluster) as executor,
             typer.progressbar(length=len(left), label=label, file=sys.stderr) as bar,
         ):
@@ -95,7 +104,26 @@ def _play(campaign: Campaign, work: Evaluation, file: str, time_s: float, seeds:
         raise
     except CampaignError as error:
         return str(error)
+    except KeyboardInterrupt:
+        kept = len(seeds) - len(campaign.missing(seeds))
+        typer.echo(f"note: {kept} of {len(seeds)} runs have results; the same command plays the others", err=True)
+        raise
     return ""
+
+
+def _modules(plan: Plan) -> dict[str, str]:
+    """Returns the hashes of the modules of a plan's components and its evaluation, as far as they are imported."""
+    used = [plan.evaluation, *(each.module for each in plan.components)]
+    with suppress(ImportError):  # the runs say so
+        import_module(plan.evaluation.partition(":")[0])
+    return {name: module.sha256 for name, module in imported_modules(used, plan.folders).items()}
+
+
+def _formerly(seeds: Sequence[int]) -> str:
+    """Says which results are of other code: `the result of seed 3 is of former code`."""
+    if len(seeds) == 1:
+        return f"the result of seed {seeds[0]} is of former code"
+    return f"{len(seeds)} results are of former code, those of seeds {listed(seeds)}"
 
 
 @contextmanager
@@ -117,7 +145,11 @@ def _digest(plan: Plan) -> str:
         (each.name, each.module, each.class_name, each.config, each.channels, each.every, each.offset)
         for each in plan.components
     ]
-    return hashlib.sha256(repr((plan.period_us, played)).encode()).hexdigest()[:16]
+    return _short((plan.period_us, played))
+
+
+def _short(value: Any) -> str:
+    return hashlib.sha256(repr(value).encode()).hexdigest()[:16]
 
 
 def _numbers(text: str) -> range:
@@ -126,11 +158,10 @@ def _numbers(text: str) -> range:
     Raises:
         BadParameter: the text is neither.
     """
-    first, dots, last = text.partition("..")
-    try:
-        found = range(int(first), int(last if dots else first) + 1)
-    except ValueError:
-        found = range(0)
-    if not found or found.start < 0:
+    words = re.fullmatch(r"(\d{1,30})(?:\.\.(\d{1,30}))?", text.strip(), re.ASCII)
+    first, last = (int(words[1]), int(words[2] or words[1])) if words else (1, 0)
+    if first > last:
         raise typer.BadParameter(f"--seeds: '{text}' is not a range of seeds; use 1..20, or 7")
-    return found
+    if last - first >= _MOST:
+        raise typer.BadParameter(f"--seeds: '{text}' is too many; use {_MOST:,} seeds at most")
+    return range(first, last + 1)

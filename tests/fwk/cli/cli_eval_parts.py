@@ -1,6 +1,7 @@
 """An evaluation that measures nothing but its own arguments, of a component that does nothing."""
 
 import os
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -18,9 +19,13 @@ class Idle(Component):
 
 
 def measured(file: str, time_s: float, seed: int, sets: Sequence[str] = ()) -> dict[str, Any]:
-    """Returns the arguments and the number of the process; seed 13 fails."""
+    """Returns the arguments and the number of the process; seed 13 fails, 66 dies, and 77 exits."""
     if seed == 13:
         raise ValueError("an unlucky seed")
+    if seed == 66:
+        os._exit(1)
+    if seed == 77:
+        sys.exit("no more")
     return {"time_s": time_s, "seed": seed, "process": os.getpid(), "sets": list(sets)}
 
 

@@ -1,33 +1,22 @@
 """`fwk eval`: many seeded runs of a launch file, kept in a folder."""
 
 import json
-import os
 import re
 import subprocess
 import sys
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
-from importlib import import_module
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Timer
 from typing import Any
-from unittest.mock import patch
 
 import psutil
 import pytest
-from typer.testing import CliRunner
 
-from fwk.cli.commands import app
 from fwk.cli.recordings import evaluate
-from fwk.testing import campaign
-from fwk.testing.campaign import Campaign, CampaignError, FolderError, executor_of
+from fwk.testing.campaign import Campaign, FolderError
+from fwk.testing.executors import CampaignError
 from tests.fwk.cli.cli_eval_parts import measured
-
-LAUNCH = """
-name: it
-evaluation: tests.fwk.cli.cli_eval_parts:measured
-components:
-  it/idle: {use: tests.fwk.cli.cli_eval_parts:Idle}
-"""
+from tests.fwk.cli.cli_eval_tools import LAUNCH, Queue, evaluated
 
 
 @pytest.fixture
@@ -36,11 +25,6 @@ def launch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     file = tmp_path / "it.yaml"
     file.write_text(LAUNCH)
     return file
-
-
-def evaluated(*words: str) -> tuple[int, str, str]:
-    result = CliRunner().invoke(app, ["eval", *words])
-    return result.exit_code, result.stdout, result.stderr
 
 
 def test_each_seed_is_measured_and_reported(launch: Path) -> None:
@@ -77,6 +61,8 @@ def test_no_more_processes_than_missing_runs(launch: Path, monkeypatch: pytest.M
     [
         (("--seeds", "3..1"), "'3..1' is not a range of seeds; use 1..20, or 7"),
         (("--seeds", "x"), "'x' is not a range of seeds"),
+        (("--seeds", "1_0"), "'1_0' is not a range of seeds"),
+        (("--seeds", "1..100001"), "'1..100001' is too many; use 100,000 seeds at most"),
         (("--time", "soon"), "'soon'"),
     ],
 )
@@ -237,28 +223,51 @@ def test_early_stop_cancels_runs_that_did_not_begin(tmp_path: Path) -> None:
     assert (begun, [each.cancelled() for each in executor.futures]) == ([0], [False, True, True, True, True])
 
 
-class Queue(Executor):
-    """Runs the first call at once, and never the others."""
+@pytest.mark.parametrize(
+    ("seed", "cause"), [(66, "its process died; perhaps a program killed it"), (77, "SystemExit: no more")]
+)
+def test_run_that_ends_its_process_fails_alone(launch: Path, seed: int, cause: str) -> None:
+    code, table, said = evaluated(str(launch), "--seeds", f"{seed - 2}..{seed + 5}", "--jobs", "2")
+    assert (code, table) == (1, " ".join(str(each) for each in range(seed - 2, seed + 6) if each != seed) + "\n")
+    assert f"error: 1 of 8 runs failed: seed {seed}: {cause}" in said
 
-    def __init__(self) -> None:
-        self.futures: list[Future[Any]] = []
 
-    def submit(self, work: Any, /, *words: Any, **named: Any) -> Future[Any]:
-        future: Future[Any] = Future()
-        self.futures.append(future)
-        if len(self.futures) == 1:
-            future.set_result(work(*words, **named))
-        return future
+def test_failures_of_one_cause_are_told_together(tmp_path: Path) -> None:
+    def fails(file: str, time_s: float, seed: int) -> Any:
+        raise ValueError("an unlucky\nseed " * (99 if seed == 20 else 1))
 
-    def give_up(self) -> None:
-        """Fails the calls that were not run."""
-        for future in self.futures[1:]:
-            future.set_exception(TimeoutError("never begun, and the first run gave no result"))
+    told = "seeds 1, 2, 3, 4, 5, 6, 7, 8, 9, 10 and 2 more: ValueError: an unlucky seed; seed 20: ValueError: an unlu"
+    with ThreadPoolExecutor(1) as executor, pytest.raises(CampaignError, match=re.escape(told)) as raised:
+        list(Campaign(tmp_path, {}).play(fails, "it", 1.0, [*range(1, 13), 20], executor))
+    assert str(raised.value).endswith(" ...")
+    assert len(str(raised.value)) < 500
+
+
+def test_two_evaluations_do_not_share_a_folder(launch: Path) -> None:
+    with Campaign(launch.parent / "eval-it", {}).alone():
+        (launch.parent / "eval-it" / "campaign.json").unlink()
+        code, table, said = evaluated(str(launch), "--seeds", "1", "--jobs", "1")
+        assert (code, table) == (1, "")
+        assert "error: another evaluation is playing into eval-it; wait until it has ended, or" in said
+    assert evaluated(str(launch), "--seeds", "1", "--jobs", "1")[0] == 0
+
+
+def test_results_of_former_code_are_named(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    words = (str(launch), "--jobs", "1", "--seeds")
+    assert "former code" not in evaluated(*words, "1..2")[2]
+    monkeypatch.setattr(evaluate, "_modules", lambda plan: {"it": "changed"})
+    code, table, said = evaluated(*words, "1..3")
+    assert (code, table) == (0, "1 2 3\n")
+    cure = "remove their files from eval-it to play them again"
+    assert f"note: 2 results are of former code, those of seeds 1, 2; {cure}\n" in said
+    (launch.parent / "eval-it" / "seed-1.json").unlink()
+    assert f"note: the result of seed 2 is of former code; {cure}\n" in evaluated(*words, "1..3")[2]
+    assert "former code" not in evaluated(*words, "1")[2]
 
 
 KILLED = """
 import os, signal
-from fwk.testing.campaign import executor_of
+from fwk.testing.executors import executor_of
 with executor_of(1) as workers:
     print(workers.submit(os.getpid).result(), flush=True)
     workers.submit(signal.pause).result()
@@ -276,7 +285,8 @@ def test_runs_of_a_killed_evaluation_end_with_it() -> None:
 INTERRUPTED = """
 import os, signal, sys, threading
 from pathlib import Path
-from fwk.testing.campaign import Campaign, executor_of
+from fwk.testing.campaign import Campaign
+from fwk.testing.executors import executor_of
 signal.signal(signal.SIGINT, signal.default_int_handler)
 def work(file, time_s, seed):
     return signal.pause() if seed else os.getpid()
@@ -294,27 +304,13 @@ def test_ctrl_c_does_not_wait_for_runs_that_have_begun(tmp_path: Path) -> None:
     assert not psutil.pid_exists(json.loads((tmp_path / "seed-0.json").read_text()))
 
 
-@pytest.mark.slow
-@patch.dict(os.environ)  # a cluster of this process sets variables for its workers
-def test_two_dask_workers_play_the_seeds(launch: Path) -> None:
-    distributed: Any = import_module("distributed")
-    with distributed.Client(n_workers=2, threads_per_worker=1, dashboard_address=None) as client:
-        address = client.scheduler.address
-        assert evaluated(str(launch), "--seeds", "1..4", "--cluster", address)[:2] == (0, "1 2 3 4\n")
-        code, _, said = evaluated(str(launch), "--seeds", "12..13", "--cluster", address)
-        assert (code, "seed 13: ValueError: an unlucky seed" in said) == (1, True)
-    results = [json.loads((launch.parent / f"eval-it/seed-{seed}.json").read_text()) for seed in (1, 2, 3, 4, 12)]
-    assert len({result["process"] for result in results} - {os.getpid()}) == 2
+def test_interrupted_evaluation_says_what_is_left(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    play = Campaign.play
 
+    def interrupted(*words: Any) -> Any:
+        yield next(play(*words))
+        raise KeyboardInterrupt
 
-def test_address_without_a_scheduler_is_named(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(campaign, "CONNECT_S", 0.1)
-    code, _, said = evaluated(str(launch), "--seeds", "1", "--cluster", "tcp://127.0.0.1:9")
-    assert (code, "no Dask scheduler at tcp://127.0.0.1:9" in said) == (1, True)
-
-
-def test_missing_dask_is_named_with_the_line_to_type(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    right = "a cluster needs Dask, which is not installed; type: pip install 'fwk[eval]'"
-    with pytest.raises(CampaignError, match=re.escape(right)), executor_of(1, "tcp://127.0.0.1:9"):
-        pass
+    monkeypatch.setattr(Campaign, "play", interrupted)
+    code, _, said = evaluated(str(launch), "--seeds", "1..3", "--jobs", "1")
+    assert (code, "note: 1 of 3 runs have results; the same command plays the others" in said) == (130, True)

@@ -31,6 +31,11 @@ def test_report_of_two_short_pieces(tmp_path: Path) -> None:
     assert picture.std() > 1.0
 
 
+def test_piece_without_a_tick_fails() -> None:
+    with pytest.raises(ValueError, match=r"0\.01 s is shorter than a tick of 0\.04 s"):
+        measured("soccer-truth.yaml", 0.01, 1)
+
+
 def test_report_without_matplotlib_names_the_line_to_type(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
     text = report([{each.name: [] for each in MEASURES}], tmp_path)

@@ -19,6 +19,8 @@ from procs.evaluation.table import (
     root_99,
     root_ratio,
     rows_of,
+    share,
+    wilson,
 )
 from procs.model.frames import Floats
 
@@ -83,3 +85,20 @@ def test_interval_of_an_event_never_seen_ends_above_zero() -> None:
 def test_infinite_value_stays_valid_json() -> None:
     rows = rows_of([{"delay": np.full(3, np.inf)}], [Measure("delay", median, "s", "<= 1")])
     assert json.loads(as_json(rows), parse_constant=pytest.fail)[0]["value"] is None
+
+
+@pytest.mark.parametrize(("successes", "low", "high"), [(0, 0.0, 0.278), (5, 0.237, 0.763), (10, 0.722, 1.0)])
+def test_interval_of_shares_is_wilsons(successes: int, low: float, high: float) -> None:
+    assert wilson(successes, 10) == pytest.approx((low, high), abs=1e-3)
+
+
+def test_trials_that_all_ended_alike_have_an_interval() -> None:
+    """Two matches that were not won say little about how often matches are won."""
+    measures = [Measure("won", share, "share", ""), Measure("known", mean, "share", "")]
+    lost = {"won": np.array([0.0]), "known": np.array([1.0, 1.0])}
+    won, known = rows_of([lost, lost], measures)
+    assert (won.low, won.high) == pytest.approx((0.0, 0.658), abs=1e-3)
+    assert (known.low, known.high) == (1.0, 1.0)
+    assert rows_of([lost], measures)[0].high == pytest.approx(0.793, abs=1e-3)
+    both = {"won": np.array([1.0]), "known": np.array([1.0])}
+    assert [(row.low, row.high) for row in rows_of([lost, both], measures)[:1]] == [(0.0, 1.0)]

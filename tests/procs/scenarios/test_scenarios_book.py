@@ -65,7 +65,18 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
         ("commands: [{at_s: 1}]", ScenarioError, "commands.0: give one of place_ball, place_robot, referee"),
         ("commands: [{place_ball: {x: 1}}]", ScenarioError, "commands.0: place_ball: there is no 'x'; there are x_m"),
         ("commands: [{place_robot: {x_m: left}}]", ScenarioError, "x_m is 'left'; it should be a number"),
-        ("robots: [", ScenarioError, "mine.yaml"),
+        ("robots: [", ScenarioError, "mine.yaml:1: expected"),
+        ("robots: [cyan2]\nalways: [x]\nalways: [y]", ScenarioError, "mine.yaml:3: 'always' is given twice"),
+        ("robots: [cyan2]\nplaces: {cyan2: [1, 0, 0], cyan2: [2, 0, 0]}", ScenarioError, "'cyan2' is given twice"),
+        ("robots: [cyan2]\ntime_s: yes", ScenarioError, "time_s: Input should be a valid number"),
+        ("ball: {x_m: true}", ScenarioError, "ball.x_m: Input should be a valid number"),
+        ("seed: true", ScenarioError, "seed: Input should be a valid integer"),
+        (
+            "robots: [cyan2]\nat_end: [reasons]\ncommands: [{place_robot: {robot: cyan3}}]",
+            ScenarioError,
+            "commands.0: place_robot: no robot 'cyan3'; did you mean 'cyan2'?",
+        ),
+        ("dummies: [cyan2]\nalways: ['\"cyan3\" not in touching']", ScenarioError, "no robot 'cyan3'; did you mean"),
         ("robots: [cyan2]\nplaces: {cyan2: [100, 0, 0]}\nat_end: [ball_speed < 1]", ScenarioError, "outside the walls"),
         ("dummies: [a1, b1]\nplaces: {a1: [0, 0, 0], b1: [0, 0, 0]}\nat_end: [touching]", ScenarioError, "0 m apart"),
         ("robots: [cyan2]\nplaces: {cyan2: [.nan, 0, 0]}", ScenarioError, "places.cyan2.0: .* finite number"),
@@ -119,6 +130,21 @@ def test_settings_are_added_to_places_and_rules(tmp_path: Path) -> None:
         'at_end: [state("half_time")]\n'
     )
     assert run(written(tmp_path, text)).broken == []
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("pass-is-recieved", "pass-is-recieved: there is no such scenario; did you mean 'pass-is-received'?\n"),
+        ("qq", "qq: there is no such scenario\n"),
+        (".", ".: Is a directory\n"),
+    ],
+)
+def test_file_that_cannot_be_read_is_named(
+    name: str, message: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["scenarios", name])
+    assert (command.main(), capsys.readouterr().err) == (2, message)
 
 
 def test_command_that_is_refused_breaks_a_scenario(tmp_path: Path) -> None:
@@ -183,10 +209,11 @@ def test_condition_that_cannot_be_judged_is_a_mistake(tmp_path: Path, text: str)
 
 
 def test_evaluation_of_the_book_counts_seeds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    written(tmp_path, "dummies: [cyan2]\nalways: [x(cyan2) < 0]\ntime_s: 0.3\n")
+    text = "dummies: [cyan2]\nalways: [x(cyan2) < 0]\neventually: [world.game_state.header.tick > 5]\ntime_s: 0.3\n"
+    written(tmp_path, text)
     (tmp_path / "bad.yaml").write_text("dummies: [cyan2]\nalways: [x(cyan2) > 0]\ntime_s: 0.3\n")
     monkeypatch.setattr(evaluation, "BOOK", tmp_path)
-    results = [evaluation.played("scenarios.yaml", 25.0, seed) for seed in (1, 2)]
+    results = [evaluation.played("scenarios.yaml", 0.1, seed) for seed in (1, 2)]  # no scenario is cut off
     assert results == [{"bad": ["0.05 s: not x(cyan2) > 0"], "mine": []}] * 2
     out = tmp_path / "out"
     out.mkdir()
@@ -195,11 +222,6 @@ def test_evaluation_of_the_book_counts_seeds(tmp_path: Path, monkeypatch: pytest
     assert {name: row["value"] for name, row in rows.items()} == {evaluation.ALL: 0.5, "bad": 0.0, "mine": 1.0}
     assert text.endswith("bad: 0.05 s: not x(cyan2) > 0")
     assert sorted(file.name for file in out.iterdir()) == ["measures.png", "table.csv", "table.json"]
-
-
-@pytest.mark.parametrize(("successes", "low", "high"), [(0, 0.0, 0.278), (5, 0.237, 0.763), (10, 0.722, 1.0)])
-def test_interval_of_shares_is_wilsons(successes: int, low: float, high: float) -> None:
-    assert evaluation.interval(successes, 10) == pytest.approx((low, high), abs=1e-3)
 
 
 def test_command_prints_a_line_for_each_scenario(

@@ -1,0 +1,100 @@
+"""`fwk eval` on the workers of a Dask cluster."""
+
+import json
+import os
+import re
+import sys
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import pytest
+
+from fwk.plan.what_ran import hash_of_module
+from fwk.testing import executors
+from fwk.testing.campaign import Campaign, Evaluation
+from fwk.testing.executors import CampaignError, executor_of
+from tests.fwk.cli.cli_eval_parts import measured
+from tests.fwk.cli.cli_eval_tools import LAUNCH, Queue, evaluated
+
+
+@pytest.fixture
+def launch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "it.yaml"
+    file.write_text(LAUNCH)
+    return file
+
+
+def test_lost_cluster_is_named(tmp_path: Path) -> None:
+    executor = Queue()
+    runs = Campaign(tmp_path, {}).play(measured, "it", 1.0, [1, 2], executor)
+    assert next(runs) == 1
+    assert executor.futures[1].cancel()
+    executor.futures[1].set_running_or_notify_cancel()
+    with pytest.raises(CampaignError, match="1 of 2 runs failed: seed 2: the connection to the cluster was lost"):
+        list(runs)
+
+
+def test_worker_with_other_code_is_named(launch: Path) -> None:
+    module = "tests.fwk.cli.cli_eval_parts"
+    modules = {module: hash_of_module(module)}
+    assert Evaluation(f"{module}:measured", modules=modules)(str(launch), 1.0, 1)["seed"] == 1
+    with pytest.raises(CampaignError, match=f"a worker has other code of {module} and 1 more; copy the code"):
+        Evaluation(f"{module}:measured", modules={module: "0", "no.such": "1"})(str(launch), 1.0, 1)
+
+
+def test_worker_keeps_the_code_that_it_used_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(tmp_path))
+    file = tmp_path / "cli_eval_changing.py"
+    file.write_text("def measured(file, time_s, seed):\n    return {'seed': seed}\n")
+    former = {"cli_eval_changing": hash_of_module("cli_eval_changing")}
+    assert Evaluation("cli_eval_changing:measured", modules=former)("it", 1.0, 1) == {"seed": 1}
+    file.write_text("def measured(file, time_s, seed):\n    return {'seed': -seed}\n")
+    now = {"cli_eval_changing": hash_of_module("cli_eval_changing")}
+    with pytest.raises(CampaignError, match="a worker has other code of cli_eval_changing"):
+        Evaluation("cli_eval_changing:measured", modules=now)("it", 1.0, 1)
+
+
+@pytest.mark.slow
+@patch.dict(os.environ)  # a cluster of this process sets variables for its workers
+def test_two_dask_workers_play_the_seeds(launch: Path) -> None:
+    distributed: Any = import_module("distributed")
+    with distributed.Client(n_workers=2, threads_per_worker=1, dashboard_address=None) as client:
+        address = client.scheduler.address
+        assert evaluated(str(launch), "--seeds", "1..4", "--cluster", address)[:2] == (0, "1 2 3 4\n")
+        code, _, said = evaluated(str(launch), "--seeds", "12..13", "--cluster", address)
+        assert (code, "seed 13: ValueError: an unlucky seed" in said) == (1, True)
+    results = [json.loads((launch.parent / f"eval-it/seed-{seed}.json").read_text()) for seed in (1, 2, 3, 4, 12)]
+    assert len({result["process"] for result in results} - {os.getpid()}) == 2
+
+
+@pytest.mark.slow
+@patch.dict(os.environ)
+def test_cluster_without_workers_is_named(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(executors, "CONNECT_S", 1.0)
+    distributed: Any = import_module("distributed")
+    with distributed.Client(n_workers=0, dashboard_address=None) as client:
+        address = client.scheduler.address
+        code, _, said = evaluated(str(launch), "--seeds", "1", "--cluster", address)
+    assert (code, f"{address} has no workers; start some with: dask worker {address}" in said) == (1, True)
+
+
+def test_address_that_needs_certificates_is_refused(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(executors, "CONNECT_S", 0.1)
+    code, _, said = evaluated(str(launch), "--seeds", "1", "--cluster", "tls://127.0.0.1:9")
+    assert (code, "no Dask scheduler at tls://127.0.0.1:9: TLS expects" in said) == (1, True)
+
+
+def test_address_without_a_scheduler_is_named(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(executors, "CONNECT_S", 0.1)
+    code, _, said = evaluated(str(launch), "--seeds", "1", "--cluster", "tcp://127.0.0.1:9")
+    assert (code, "no Dask scheduler at tcp://127.0.0.1:9" in said) == (1, True)
+
+
+def test_missing_dask_is_named_with_the_line_to_type(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    right = "a cluster needs Dask, which is not installed; type: pip install 'fwk[eval]'"
+    with pytest.raises(CampaignError, match=re.escape(right)), executor_of(1, "tcp://127.0.0.1:9"):
+        pass
