@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, PositiveFlo
 
 from procs.model.field import Point
 from procs.model.geometry import clamp, wrap_rad
+from procs.model.kinematics import Velocity
 
 
 class Pose(NamedTuple):
@@ -14,17 +15,6 @@ class Pose(NamedTuple):
 
     place: Point
     heading_rad: float
-
-
-class Velocity(NamedTuple):
-    """Velocity, in the world frame or the robot's own."""
-
-    vx_m_s: float
-    vy_m_s: float
-    omega_rad_s: float
-
-
-STANDSTILL = Velocity(0.0, 0.0, 0.0)
 
 
 class Limits(BaseModel):
@@ -72,7 +62,7 @@ def ahead_in_time(pose: Pose, measured: Velocity, duration_s: float) -> Pose:
 
 
 def turned(x: float, y: float, angle_rad: float) -> tuple[float, float]:
-    """Returns a vector turned counter-clockwise."""
+    """Returns the vector (x, y), in any unit, turned counter-clockwise."""
     cos, sin = math.cos(angle_rad), math.sin(angle_rad)
     return x * cos - y * sin, x * sin + y * cos
 
@@ -90,7 +80,10 @@ def turning_to_go_rad_s(turn_rad: float, limit_rad_s: float, limits: Limits) -> 
 
 
 def approach(before: Velocity, wanted: Velocity, duration_s: float, change_m_s2: float, turn_rad_s2: float) -> Velocity:
-    """Returns the wanted velocity, or the nearest one that the limits allow in the time."""
+    """Returns the wanted velocity, or the nearest one that the limits allow after `duration_s`, in the same frame.
+
+    `change_m_s2` limits the change of the velocity, `turn_rad_s2` that of the turning speed.
+    """
     dvx, dvy = wanted.vx_m_s - before.vx_m_s, wanted.vy_m_s - before.vy_m_s
     change_m_s, possible_m_s = math.hypot(dvx, dvy), change_m_s2 * duration_s
     share = 1.0 if change_m_s <= possible_m_s else possible_m_s / change_m_s

@@ -9,13 +9,14 @@ from lcmtypes.soccer import drive_target_t, navigator_state_t, world_model_t
 from procs.behaviour import motion, obstacles
 from procs.behaviour.bodies import Bodies
 from procs.behaviour.identity import number_of_player
-from procs.behaviour.motion import STANDSTILL, Limits, Pose, Velocity
+from procs.behaviour.motion import Limits, Pose
 from procs.behaviour.path import Way, find_way
 from procs.behaviour.permitted import Permitted, is_field_player
 from procs.behaviour.velocity_obstacles import safe_velocity
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import clamp, plausible, wrap_rad
+from procs.model.kinematics import STANDSTILL, Velocity
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 
 _FORWARD = 0.8  # cosine of the largest angle between a change of velocity towards the ball and the heading

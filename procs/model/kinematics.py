@@ -16,7 +16,7 @@ Wheels = tuple[float, float, float]
 
 
 class Velocity(NamedTuple):
-    """Velocity of a body in its own frame."""
+    """Velocity of a body, in its own frame unless another frame is named."""
 
     vx_m_s: float
     vy_m_s: float

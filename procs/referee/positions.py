@@ -14,6 +14,7 @@ THEIRS_M = 3.0
 DROPPED_M = 1.0
 """Least distance of every robot at a dropped ball."""
 TOLERANCE_M = 0.05
+"""A robot that is nearer, or further in the wrong half, by less than this is not misplaced."""
 
 _ENDS, _FIELD = Ends(), Field()
 

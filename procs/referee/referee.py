@@ -19,12 +19,11 @@ from procs.referee.orders import carry_out
 from procs.referee.reasons import OFF_FIELD
 from procs.referee.restarts import State
 from procs.referee.rules import Rules
-from procs.referee.sight import Sight
+from procs.referee.sight import LEAVES, Sight
 from procs.referee.whistle import Whistle
 from procs.simulation.physics.events import Event, Kind
 
 _KINDS = frozenset(Kind)
-_LEAVES = frozenset({Kind.GOAL, Kind.OUT_SIDE, Kind.OUT_END})  # events of the ball, with or without a robot
 _REPEATED_TICKS = 100  # from one message with the history to the next, for readers outside that come late
 
 
@@ -86,7 +85,7 @@ class Referee(Component):
         robots = {name_of(robot.name): robot for robot in self.ground_truth.value.robots}
         robots.pop("", None)  # what plays in neither team
         reported = [event for report in self.match_events.fresh for event in report.events if event.kind in _KINDS]
-        events = [_event(event, self._names) for event in reported if event.kind in _LEAVES or self._concerns(event)]
+        events = [_event(event, self._names) for event in reported if event.kind in LEAVES or self._concerns(event)]
         return Sight(
             Point(ball.ball_x_m, ball.ball_y_m),
             events,

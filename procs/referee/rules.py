@@ -44,7 +44,7 @@ class Rules(BaseModel):
     positions_s: NonNegativeFloat = 6.0
     """Longest further wait for robots that are too near to the ball or in the wrong half."""
     ends_s: NonNegativeFloat = 20.0
-    """The same at the beginning of a half, when the robots may have changed ends."""
+    """Longest such wait at the beginning of a half, when the robots may have changed ends."""
     set_piece_s: PositiveFloat = 7.0
     """Time for a set piece; after it the other team may play the ball, too (2016: 7 s)."""
     moved_m: PositiveFloat = 0.5
@@ -56,6 +56,7 @@ class Rules(BaseModel):
     deadlock_s: PositiveFloat = 10.0
     """A ball that stays within `deadlock_m` for so long is dropped elsewhere."""
     deadlock_m: PositiveFloat = 0.5
+    """Way of a ball that counts as staying in its place."""
     collision_m_s: PositiveFloat = 3.0
     """Closing speed above which a collision is a foul of the faster robot."""
     pushing_m: PositiveFloat = 0.4
@@ -75,12 +76,13 @@ class Rules(BaseModel):
     advantage_s: NonNegativeFloat = 3.0
     """For so long a foul is held back while the team that suffers it has the ball (2016: the referee's judgement)."""
     fouls_per_card: int = Field(default=3, ge=1)
-    """So many fouls of a robot bring a yellow card."""
+    """Number of fouls of a robot that bring a yellow card."""
     double_yellow_s: PositiveFloat = 90.0
     """A robot with its second yellow card leaves the field for this time (RefBox: 90 s)."""
     repair_s: PositiveFloat = 20.0
     """A robot under repair, or its substitute, comes back after this time (RefBox: 20 s)."""
     field: SoccerField = SoccerField()
+    """Measures of the field."""
     robot: RobotModel = ROBOT
     """Geometry of the robots, by which pushing is judged."""
     players: Players = dict(PLAYERS)

@@ -3,11 +3,9 @@
 from procs.referee.ends import Team, team_number
 from procs.referee.fouls.foul import Scene
 from procs.referee.restarts import Restart
+from procs.referee.sight import LEAVES
 from procs.referee.stretch import Stretch
 from procs.simulation.physics.events import Kind
-
-_LEAVES = (Kind.GOAL, Kind.OUT_SIDE, Kind.OUT_END)
-"""Events of a ball that has left the field."""
 
 
 class Shootout:
@@ -47,7 +45,7 @@ def penalty_scored(scene: Scene, stretch: Stretch, penalty: Restart, time_s: flo
     A goal, the ball out, a further touch or time ends it. It is one shot: after it no robot of the shooting team may
     touch the ball, even if the goalkeeper has.
     """
-    left = [event for event in scene.sight.events if event.kind in _LEAVES]
+    left = [event for event in scene.sight.events if event.kind in LEAVES]
     attacked = scene.ends.side_of(penalty.team.other)
     again = stretch.released and any(team_number(robot) is penalty.team for robot in scene.sight.touching)
     scored = not again and any(event.kind is Kind.GOAL and event.x_m * attacked > 0 for event in left)

@@ -9,6 +9,9 @@ from procs.model.robot import number_of
 from procs.referee.ends import Team, team_number
 from procs.simulation.physics.events import Event, Kind
 
+LEAVES = frozenset({Kind.GOAL, Kind.OUT_SIDE, Kind.OUT_END})
+"""Events of a ball that has left the field, whether a robot touched it last or none."""
+
 _NOTHING: Mapping[str, Point] = MappingProxyType({})
 
 

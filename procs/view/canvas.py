@@ -5,10 +5,9 @@ from collections.abc import Sequence
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-Picture = NDArray[np.uint8]
-"""Height x width x 3, blue green red."""
+from procs.vision.colours import Picture
+
 Colour = tuple[int, int, int]
 """Blue, green, red."""
 Place = tuple[float, float]

@@ -2,7 +2,8 @@
 
 import math
 
-from procs.model.field import SIDES, Field
+from procs.model.field import SIDES, Arc, Field, Point
+from procs.model.geometry import ahead
 from procs.view.canvas import Canvas, Colour
 
 GRASS: tuple[Colour, Colour] = ((64, 128, 48), (58, 118, 44))
@@ -31,19 +32,20 @@ def draw_ground(canvas: Canvas, field: Field) -> None:
     for arc in field.arcs():
         whole = arc.end_rad - arc.start_rad > math.pi
         cap_rad = 0.0 if whole else field.line_width_m / arc.radius_m  # the round ends must not leave the field
-        turn_rad = (arc.end_rad - arc.start_rad - 2 * cap_rad) / _ARC_STEPS
-        angles = [arc.start_rad + cap_rad + step * turn_rad for step in range(_ARC_STEPS + 1)]
-        places = [
-            (arc.centre.x_m + arc.radius_m * math.cos(angle), arc.centre.y_m + arc.radius_m * math.sin(angle))
-            for angle in angles
-        ]
-        canvas.polyline(places, field.line_width_m, WHITE)
+        canvas.polyline(arc_places(arc, _ARC_STEPS, cap_rad), field.line_width_m, WHITE)
     for mark in field.marks():
         canvas.disc(mark, field.mark_diameter_m / 2, WHITE)
     for side in SIDES:
         for post in field.goal_posts(side):
             canvas.disc(post, field.post_diameter_m / 2 + 0.04, SURROUND)
             canvas.disc(post, field.post_diameter_m / 2, POST)
+
+
+def arc_places(arc: Arc, steps: int, cap_rad: float = 0.0) -> list[Point]:
+    """Returns places on an arc at equal angles; the first and the last are `cap_rad` inside its ends."""
+    turn_rad = (arc.end_rad - arc.start_rad - 2 * cap_rad) / steps
+    angles = (arc.start_rad + cap_rad + step * turn_rad for step in range(steps + 1))
+    return [ahead(arc.centre, angle, arc.radius_m) for angle in angles]
 
 
 def _draw_goal(canvas: Canvas, field: Field, side: float) -> None:

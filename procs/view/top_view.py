@@ -14,10 +14,11 @@ from procs.model.field import Field, Point, field_of
 from procs.model.geometry import ahead
 from procs.model.robot import ROBOT, RobotModel, number_in, team_in
 from procs.view.beliefs import draw_beliefs
-from procs.view.canvas import Canvas, Colour, Picture, write
+from procs.view.canvas import Canvas, Colour, write
 from procs.view.ground import draw_ground
 from procs.view.palette import TEAM_COLOURS, UNKNOWN_TEAM
-from procs.view.scoreboard import GAME_STATE, phase, play_time
+from procs.view.scoreboard import GAME_STATE, MEASURES, TRUTH, phase, play_time
+from procs.vision.colours import Picture
 
 BODY: Colour = (38, 34, 32)
 EDGE: Colour = (84, 78, 74)
@@ -26,9 +27,6 @@ BALL: Colour = (30, 196, 250)
 BALL_EDGE: Colour = (20, 90, 130)
 BAR: Colour = (32, 28, 26)
 TEXT: Colour = (245, 245, 245)
-
-TRUTH = "world/ground_truth"
-MEASURES = "world/field"
 
 _TAIL_S = 0.12  # the ball's tail shows its way of this time
 _MARKER = 0.64  # radius of the team marker, as a share of the robot's

@@ -1,17 +1,18 @@
 """The match in the web console: a view from above, and the referee's page."""
 
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from fwk.web import Newest, OpenPage, Page, RunAccess, Scene, View
 from lcmtypes.soccer import ground_truth_t, pose_t, true_robot_t, world_model_t
 from procs.model.ball import BALL
-from procs.model.field import SIDES, Field, field_of
+from procs.model.field import SIDES, Field, Point, field_of
+from procs.model.geometry import ahead
 from procs.model.robot import CYAN, MAGENTA, ROBOT, number_in, team_in
 from procs.referee.orders import CARDS, GOALS, HALVES, PLAIN
 from procs.referee.reasons import REPAIRS
 from procs.referee.refusals import SET_PIECES
 from procs.view.camera_sight import CALIBRATION, SEES, draw_sight
+from procs.view.ground import arc_places
 from procs.view.scoreboard import GAME_STATE, MEASURES, TRUTH, headline
 
 COLOURS = {CYAN: "#00b0d6", MAGENTA: "#d628aa"}
@@ -53,9 +54,8 @@ class MatchView(View):
             _draw_mind(scene, newest, robot, robot_radius_m)
         for robot in truth.robots:
             _draw_robot(scene, robot, robot_radius_m)
-        _draw_ball(
-            scene, truth, newest.settings("world/*", "ball").get("radius_m", BALL.radius_m)
-        )  # above what robots believe of it
+        ball_radius_m = newest.settings("world/*", "ball").get("radius_m", BALL.radius_m)
+        _draw_ball(scene, truth, ball_radius_m)  # above the beliefs of the robots about it
 
     def sight(self, camera: str, newest: Newest, scene: Scene) -> None:
         """Draws the detections of a robot over an image of its camera."""
@@ -123,9 +123,7 @@ def _draw_ground(scene: Scene, field: Field) -> None:
     for segment in field.segments():
         scene.line([segment.start, segment.end], _WHITE, field.line_width_m)
     for arc in field.arcs():
-        turn_rad = (arc.end_rad - arc.start_rad) / _ARC_STEPS
-        angles = [arc.start_rad + step * turn_rad for step in range(_ARC_STEPS + 1)]
-        scene.line([_beside(arc.centre, arc.radius_m, angle) for angle in angles], _WHITE, field.line_width_m)
+        scene.line(arc_places(arc, _ARC_STEPS), _WHITE, field.line_width_m)
     for mark in field.marks():
         scene.circle(mark.x_m, mark.y_m, field.mark_diameter_m / 2, fill=_WHITE)
     for side in SIDES:
@@ -137,14 +135,10 @@ def _draw_ground(scene: Scene, field: Field) -> None:
 def _draw_robot(scene: Scene, robot: true_robot_t, radius_m: float) -> None:
     colour = COLOURS.get(team_in(robot), _UNKNOWN)
     scene.layer("truth", of=robot.name)
-    scene.circle(
-        *(robot.x_m, robot.y_m, radius_m, colour, "#202226", 0.06),
-        pick=robot.name,
-        drag=robot.name,
-        trail=robot.name,
-    )
-    place = (robot.x_m, robot.y_m)
-    scene.line([place, _beside(place, _NOSE_M, robot.heading_rad)], _WHITE, 0.05)
+    body = (robot.x_m, robot.y_m, radius_m, colour, "#202226", 0.06)
+    scene.circle(*body, pick=robot.name, drag=robot.name, trail=robot.name)
+    place = Point(robot.x_m, robot.y_m)
+    scene.line([place, ahead(place, robot.heading_rad, _NOSE_M)], _WHITE, 0.05)
     scene.text(robot.x_m, robot.y_m, str(number_in(robot) or "?"), "#101214", 0.22)
 
 
@@ -178,7 +172,3 @@ def _draw_mind(scene: Scene, newest: Newest, robot: true_robot_t, radius_m: floa
     if words:
         scene.layer("roles", of=robot.name)
         scene.text(robot.x_m, robot.y_m - 0.45, words, _WHITE, 0.2)
-
-
-def _beside(place: Sequence[float], away_m: float, angle_rad: float) -> tuple[float, float]:
-    return place[0] + away_m * math.cos(angle_rad), place[1] + away_m * math.sin(angle_rad)

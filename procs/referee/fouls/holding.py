@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from procs.model.field import Point
 from procs.referee.fouls.foul import Foul, Scene
 
-_STILL_M_S = 0.1
-_BACK_M_S = 0.05
+_STILL_M_S = 0.1  # a slower ball does not roll
+_BACK_M_S = 0.05  # a ball that comes faster towards its carrier is pulled back
 
 
 class Holding:

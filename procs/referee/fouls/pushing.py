@@ -9,7 +9,7 @@ from procs.referee.fouls.foul import Foul, Scene
 from procs.simulation.physics.events import Kind
 
 _TOUCHING_M = 0.02  # robots whose gap is smaller touch each other
-_SHOVES_M_S = 0.1
+_SHOVES_M_S = 0.1  # two robots that move faster in the pusher's direction are a push
 _REST = Point(0.0, 0.0)
 
 

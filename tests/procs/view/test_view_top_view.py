@@ -7,10 +7,10 @@ from fwk.web import Newest
 from lcmtypes.soccer import game_state_t, ground_truth_t, true_robot_t, world_model_t
 from procs.model.field import Field
 from procs.simulation.physics.reports import field_message
-from procs.view.canvas import Picture
 from procs.view.ground import GRASS, WHITE
 from procs.view.palette import TEAM_COLOURS
 from procs.view.top_view import BALL, BAR, TopView, picture, picture_with_beliefs
+from procs.vision.colours import Picture
 
 VIEW = TopView(960)
 PX_PER_M = 960 / 24
