@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from fwk.testing import ExpressionError
+from fwk.testing import ExpressionError, Verdict
 from procs.scenarios import __main__ as command
 from procs.scenarios import evaluation
-from procs.scenarios.scenario import BOOK, ScenarioError, read, run
+from procs.scenarios.scenario import BOOK, Scenario, ScenarioError, read, run
 
 SCENARIOS = sorted(BOOK.glob("*.yaml"))
 
@@ -233,3 +233,24 @@ def test_command_prints_a_line_for_each_scenario(
     printed = capsys.readouterr().out.splitlines()
     assert printed[0].startswith("ok     match-ends (")
     assert printed[1:] == ["failed mine (0.1 s)", "       0.05 s: not world.game_state.score_cyan > 0"]
+
+
+def test_scenario_is_played_with_the_seed_of_the_command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A seed with which `fwk eval` saw a scenario fail shows the failure again."""
+    asked: list[int] = []
+
+    def played(scenario: Scenario) -> Verdict:
+        asked.append(scenario.seed)
+        return Verdict(1.0, [])
+
+    monkeypatch.setattr(command, "outcome", played)
+    for words in (["--seed", "7"], []):
+        monkeypatch.setattr("sys.argv", ["scenarios", "pass-is-received", *words])
+        assert command.main() == 0
+    assert asked == [7, read(BOOK / "pass-is-received.yaml").seed]
+    monkeypatch.setattr("sys.argv", ["scenarios", "--seed=-1"])
+    with pytest.raises(SystemExit):
+        command.main()
+    assert "'-1' is not a seed; use a whole number from 0" in capsys.readouterr().err
