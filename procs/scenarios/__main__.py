@@ -1,11 +1,12 @@
-"""Plays scenarios and says which succeed: `python -m procs.scenarios [--seed N] [FILE...]`; without a file all of the book."""
+"""Plays scenarios and says which succeed: `python -m procs.scenarios [--seed N] [FILE...]`; without a file the book."""
 
 import argparse
 import sys
+import traceback
 from difflib import get_close_matches
 from pathlib import Path
 
-from fwk.testing import ExpressionError
+from fwk.testing import ExpressionError, Verdict
 from procs.scenarios.scenario import BOOK, ScenarioError, outcome, read
 
 
@@ -36,6 +37,9 @@ def main() -> int:
             print(f"{path}: {error}", file=sys.stderr)
             wrong = True
             continue
+        except Exception as error:  # of a component
+            traceback.print_exc()
+            verdict = Verdict(broken=[f"{type(error).__name__}: {error}"])
         failed += not verdict.ok
         print(
             f"{'ok    ' if verdict.ok else 'failed'} {path.stem} ({verdict.time_s:.1f} s)",

@@ -9,6 +9,7 @@ import pytest
 from fwk.testing import ExpressionError, Verdict
 from procs.scenarios import __main__ as command
 from procs.scenarios import evaluation
+from procs.scenarios.dummy import Dummy
 from procs.scenarios.scenario import BOOK, Scenario, ScenarioError, read, run
 
 SCENARIOS = sorted(BOOK.glob("*.yaml"))
@@ -254,3 +255,25 @@ def test_scenario_is_played_with_the_seed_of_the_command(
     with pytest.raises(SystemExit):
         command.main()
     assert "'-1' is not a seed; use a whole number from 0" in capsys.readouterr().err
+
+
+def test_component_that_fails_breaks_its_scenario_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = "dummies: [cyan2]\nalways: [x(cyan2) < 0]\ntime_s: 0.1\n"
+    good, bad = written(tmp_path, text), tmp_path / "bad.yaml"
+    bad.write_text(text.replace("cyan2", "cyan3"))
+
+    def fails(dummy: Dummy) -> None:
+        raise ValueError("no wheels")
+
+    monkeypatch.setattr(evaluation, "BOOK", tmp_path)
+    monkeypatch.setattr("sys.argv", ["scenarios", str(bad), str(good)])
+    turned = Dummy.loop
+    monkeypatch.setattr(Dummy, "loop", lambda dummy: fails(dummy) if dummy.name == "cyan3/dummy" else turned(dummy))
+    monkeypatch.setattr("procs.scenarios.scenario._unknown_in", lambda scenario: [])
+    assert evaluation.played("scenarios.yaml", 1.0, 1) == {"bad": ["ValueError: no wheels"], "mine": []}
+    assert command.main() == 1
+    shown = capsys.readouterr()
+    assert shown.out == "failed bad (0.0 s)\n       ValueError: no wheels\nok     mine (0.1 s)\n"
+    assert "Traceback" in shown.err
