@@ -148,7 +148,7 @@ def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: grou
     return _Ball(
         float(error @ error),
         (ball.vx_m_s - truth.ball_vx_m_s) ** 2 + (ball.vy_m_s - truth.ball_vy_m_s) ** 2,
-        bool(covariance.any() and error @ np.linalg.solve(covariance, error) < _INSIDE_95),
+        covers(covariance, error),
         math.dist((own.x_m, own.y_m), (truth.ball_x_m, truth.ball_y_m)) <= NEAR_M,
         math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s),
         "itself" if robot in touching else "another" if touching else "",
@@ -156,6 +156,11 @@ def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: grou
         flies(truth),
         (ball.z_m - truth.ball_z_m) ** 2,
     )
+
+
+def covers(covariance: Floats, error: Floats) -> bool:
+    """Returns whether an error (2) lies within the ellipse of its covariance (2, 2) that holds 95 % of all errors."""
+    return bool(covariance.any() and error @ np.linalg.solve(covariance, error) < _INSIDE_95)
 
 
 def _kicks(piece: Piece) -> Samples:

@@ -9,6 +9,7 @@ import numpy as np
 from fwk.testing import launch_plan, system_of
 from fwk.testing.executors import INSTALL
 from procs.evaluation.beliefs import Samples, believed
+from procs.evaluation.claims import claims
 from procs.evaluation.conduct import conducted
 from procs.evaluation.delays import delays
 from procs.evaluation.piece import Piece, piece_of
@@ -39,7 +40,7 @@ def measured(
 
 def samples_of(piece: Piece) -> Samples:
     """Returns the samples of every measure of a piece."""
-    return believed(piece) | team_ball(piece) | delays(piece) | conducted(piece) | possession(piece)
+    return believed(piece) | claims(piece) | team_ball(piece) | delays(piece) | conducted(piece) | possession(piece)
 
 
 def report(results: Sequence[Mapping[str, list[float] | list[list[float]]]], folder: Path) -> str:

@@ -1,11 +1,12 @@
-"""Plays scenarios and says which succeed: `python -m procs.scenarios [FILE...]`; without a file all of the book."""
+"""Plays scenarios and says which succeed: `python -m procs.scenarios [--seed N] [FILE...]`; without a file the book."""
 
 import argparse
 import sys
+import traceback
 from difflib import get_close_matches
 from pathlib import Path
 
-from fwk.testing import ExpressionError
+from fwk.testing import ExpressionError, Verdict
 from procs.scenarios.scenario import BOOK, ScenarioError, outcome, read
 
 
@@ -15,11 +16,14 @@ def main() -> int:
     parser.add_argument(
         "files", nargs="*", type=Path, help="scenario files; names in the book need no folder or ending"
     )
+    parser.add_argument("--seed", type=_seed, metavar="N", help="plays all with this seed instead of their own")
+    words = parser.parse_args()
     scenarios, wrong = {}, False
-    for file in parser.parse_args().files or sorted(BOOK.glob("*.yaml")):
+    for file in words.files or sorted(BOOK.glob("*.yaml")):
         path = file if file.exists() else BOOK / f"{file.name.removesuffix('.yaml')}.yaml"
         try:
-            scenarios[path] = read(path)
+            scenario = read(path)
+            scenarios[path] = scenario if words.seed is None else scenario.model_copy(update={"seed": words.seed})
         except (ScenarioError, OSError) as error:
             print(_said(error, file), file=sys.stderr)
             wrong = True
@@ -33,6 +37,9 @@ def main() -> int:
             print(f"{path}: {error}", file=sys.stderr)
             wrong = True
             continue
+        except Exception as error:  # of a component
+            traceback.print_exc()
+            verdict = Verdict(broken=[f"{type(error).__name__}: {error}"])
         failed += not verdict.ok
         print(
             f"{'ok    ' if verdict.ok else 'failed'} {path.stem} ({verdict.time_s:.1f} s)",
@@ -40,6 +47,12 @@ def main() -> int:
             sep="\n       ",
         )
     return 2 if wrong else int(failed > 0)
+
+
+def _seed(text: str) -> int:
+    if not (text.isascii() and text.isdecimal()):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a seed; use a whole number from 0")
+    return int(text)
 
 
 def _said(error: ScenarioError | OSError, file: Path) -> str:

@@ -22,6 +22,7 @@ from lcmtypes.soccer import (
     team_message_t,
     world_model_t,
 )
+from procs.behaviour.roles import ABSENT
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
 from procs.model.frames import Floats
@@ -41,7 +42,8 @@ from procs.world_model.team import Mate, PlaceRow, Places, Team
 from procs.world_model.told import ball_of, held_by, mate_of, obstacles_of
 from procs.world_model.world_messages import fill_ball, fill_kick, fill_plan, fill_team_message, fill_world_model
 
-_STALE_S = 0.5  # older sightings of mates are not used
+_STALE_S = 0.5  # older sightings of mates are not used, and older words of the own kicker
+_RESTART_S = 2.0  # an agent that is silent for longer does not play
 _IN_MOUTH_M2 = np.eye(2) * 0.03**2
 """Covariance of a ball somewhere in the mouth."""
 
@@ -114,7 +116,9 @@ class WorldModel(Component):
         self._silent = RobotTracks()  # mates that do not tell their places
         self._team = Team()
         self._view: OwnView | None = None
-        self._held = False
+        self._held = self._holds = False
+        self._kicker_us = self._role_us = self.clock.now_us
+        """Time of the newest message of the own kicker, and of the own agent."""
         self._kicks = Kicks()
         self._last_us = 0
         self._sent_us = -US_PER_S  # the first message is due at once
@@ -125,6 +129,12 @@ class WorldModel(Component):
         passed_s = self.clock.since_s(self._last_us) if self._last_us else self.clock.iteration_s
         self._last_us = self.clock.now_us
         known = self.pose.refreshed
+        if self.kicker_state.refreshed:
+            self._kicker_us = self.clock.now_us
+        if self.role.refreshed:
+            self._role_us = self.clock.now_us
+        # A kicker that has fallen silent does not know whether the ball is in the mouth.
+        self._holds = bool(self.kicker_state.value.ball_held) and self.clock.since_s(self._kicker_us) <= _STALE_S
         view = OwnView(self.pose.value, self.odometry.value, known, config.shake_s_m, self._view, passed_s)
         self._view = view
         told = self._listen(now_s)
@@ -135,8 +145,7 @@ class WorldModel(Component):
         self._follow_robots(view, team, places, len(mates), told, passed_s)
         robots = self._opponents, self._silent
         fill_world_model(self.world_model.value, view, self._ball, mates, places, *robots, now_s)
-        holds = bool(self.kicker_state.value.ball_held)
-        holder = holder_of(self.world_model.value, self._robot, holds, mates, now_s, self._mouth_m)
+        holder = holder_of(self.world_model.value, self._robot, self._holds, mates, now_s, self._mouth_m)
         self.world_model.value.ball_holder = holder
         if not config.use_ball_velocity:
             self.world_model.value.ball.vx_m_s = self.world_model.value.ball.vy_m_s = 0.0
@@ -183,9 +192,9 @@ class WorldModel(Component):
             self._ball.kick(kick.velocity_m_s, kick.age_s - passed_s, kick.mouth, kick.lift_m_s)
         contact = self._contact(team, passed_s)
         self._ball.advance(passed_s, config.ball_timeout_s, contact=contact, walls=self._walls)
-        if kicker.ball_held and view.localized and not kicked:
+        if self._holds and view.localized and not kicked:
             self._take_held_ball(view)
-        self._held = kicker.ball_held
+        self._held = self._holds
         if self.ball_percept.refreshed:
             self._look_for_ball(view, self.ball_percept.value)
         self._take_mates_ball(told)
@@ -294,7 +303,7 @@ class WorldModel(Component):
         Half a tick early is nearer to the period than half a tick late. A tick without a frame of the camera waits one
         tick for it; from then on messages keep its pace, and mates hear of a sighting as soon as they can.
         """
-        caught_or_lost = self.team_message.value.ball_held != self.kicker_state.value.ball_held
+        caught_or_lost = self.team_message.value.ball_held != self._holds
         if caught_or_lost or self._kicks.untold:
             return True  # mates have to know at once
         half_tick_s = self.clock.iteration_s / 2
@@ -308,9 +317,10 @@ class WorldModel(Component):
         player = player_of(self._robot, self.config.players)
         message = self.team_message.value
         message.robot, message.number = self._robot, player.number if player else 0
-        role = self.role.value
+        plays = self.clock.since_s(self._role_us) <= _RESTART_S
+        role = self.role.value if plays else role_t(role=ABSENT)
         message.role, message.intention, message.agreement = role.role, role.intention, role.agreement
-        message.ball_held = self.kicker_state.value.ball_held
+        message.ball_held = self._holds
         fill_team_message(message, view, self._untold_ball, self._untold_obstacles)
         fill_ball(message, self.world_model.value.ball, self.ball_percept.value.confidence)
         drives = self.drive_target.has_value and self.clock.since_s(self.drive_target.header.time_us) <= _STALE_S

@@ -140,12 +140,12 @@ def _refused_by(folder: Path) -> Iterator[None]:
 
 
 def _digest(plan: Plan) -> str:
-    """Returns a digest of the components with their settings, channels and turns: runs of others are not mixed in."""
+    """Returns a digest of stages and components with all of their settings: runs of others are not mixed in."""
     played = [
         (each.name, each.module, each.class_name, each.config, each.channels, each.every, each.offset)
         for each in plan.components
     ]
-    return _short((plan.period_us, played))
+    return _short((plan.period_us, plan.stages, played))
 
 
 def _short(value: Any) -> str:

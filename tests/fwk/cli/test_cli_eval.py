@@ -89,9 +89,10 @@ def test_changed_launch_file_is_another_campaign(launch: Path) -> None:
     assert evaluated(str(launch), "--seeds", "1", "--jobs", "1")[0] == 0
     launch.write_text("# The same system.\n" + LAUNCH)
     assert evaluated(str(launch), "--seeds", "1..2", "--jobs", "1")[:2] == (0, "1 2\n")
-    launch.write_text(LAUNCH + "period_s: 0.1\n")
-    code, _, said = evaluated(str(launch), "--seeds", "1..3", "--jobs", "1")
-    assert (code, "holds another campaign" in said) == (1, True)
+    for change in ("period_s: 0.1\n", "stages: [think, act]\n"):
+        launch.write_text(LAUNCH + change)
+        code, _, said = evaluated(str(launch), "--seeds", "1..3", "--jobs", "1")
+        assert (code, "holds another campaign" in said) == (1, True)
 
 
 def test_folder_that_cannot_be_is_named(launch: Path) -> None:

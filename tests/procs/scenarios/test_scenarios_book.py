@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from fwk.testing import ExpressionError
+from fwk.testing import ExpressionError, Verdict
 from procs.scenarios import __main__ as command
 from procs.scenarios import evaluation
-from procs.scenarios.scenario import BOOK, ScenarioError, read, run
+from procs.scenarios.dummy import Dummy
+from procs.scenarios.scenario import BOOK, Scenario, ScenarioError, read, run
 
 SCENARIOS = sorted(BOOK.glob("*.yaml"))
 
@@ -233,3 +234,46 @@ def test_command_prints_a_line_for_each_scenario(
     printed = capsys.readouterr().out.splitlines()
     assert printed[0].startswith("ok     match-ends (")
     assert printed[1:] == ["failed mine (0.1 s)", "       0.05 s: not world.game_state.score_cyan > 0"]
+
+
+def test_scenario_is_played_with_the_seed_of_the_command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A seed with which `fwk eval` saw a scenario fail shows the failure again."""
+    asked: list[int] = []
+
+    def played(scenario: Scenario) -> Verdict:
+        asked.append(scenario.seed)
+        return Verdict(1.0, [])
+
+    monkeypatch.setattr(command, "outcome", played)
+    for words in (["--seed", "7"], []):
+        monkeypatch.setattr("sys.argv", ["scenarios", "pass-is-received", *words])
+        assert command.main() == 0
+    assert asked == [7, read(BOOK / "pass-is-received.yaml").seed]
+    monkeypatch.setattr("sys.argv", ["scenarios", "--seed=-1"])
+    with pytest.raises(SystemExit):
+        command.main()
+    assert "'-1' is not a seed; use a whole number from 0" in capsys.readouterr().err
+
+
+def test_component_that_fails_breaks_its_scenario_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = "dummies: [cyan2]\nalways: [x(cyan2) < 0]\ntime_s: 0.1\n"
+    good, bad = written(tmp_path, text), tmp_path / "bad.yaml"
+    bad.write_text(text.replace("cyan2", "cyan3"))
+
+    def fails(dummy: Dummy) -> None:
+        raise ValueError("no wheels")
+
+    monkeypatch.setattr(evaluation, "BOOK", tmp_path)
+    monkeypatch.setattr("sys.argv", ["scenarios", str(bad), str(good)])
+    turned = Dummy.loop
+    monkeypatch.setattr(Dummy, "loop", lambda dummy: fails(dummy) if dummy.name == "cyan3/dummy" else turned(dummy))
+    monkeypatch.setattr("procs.scenarios.scenario._unknown_in", lambda scenario: [])
+    assert evaluation.played("scenarios.yaml", 1.0, 1) == {"bad": ["ValueError: no wheels"], "mine": []}
+    assert command.main() == 1
+    shown = capsys.readouterr()
+    assert shown.out == "failed bad (0.0 s)\n       ValueError: no wheels\nok     mine (0.1 s)\n"
+    assert "Traceback" in shown.err

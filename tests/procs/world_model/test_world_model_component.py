@@ -81,6 +81,32 @@ def test_held_ball_is_in_the_mouth_and_in_the_message() -> None:
     assert robot.bench.port("team_message").sent[-1].ball_held
 
 
+def test_ball_is_not_held_for_ever_by_a_silent_kicker() -> None:
+    """The kicker's process ends while the ball is in the mouth; then the ball is carried away."""
+    robot = Robot("cyan1", (1.0, -1.0, 0.0), seed=1)
+    for tick in range(60):
+        robot.sense(np.array((4.0, -1.0)) if tick >= 20 else None, [], held=True)
+        if tick < 20:
+            robot.bench.iterate()
+        else:
+            robot.bench.port("kicker_state").waiting.clear()
+            robot.bench.iterate()
+    assert robot.world.ball_holder == ""
+    assert robot.world.ball.x_m == pytest.approx(4.0, abs=0.1)
+    assert not robot.bench.port("team_message").sent[-1].ball_held
+
+
+def test_robot_without_an_agent_tells_that_it_does_not_play() -> None:
+    robot = Robot("cyan1", (1.0, -1.0, 0.0), seed=1)
+    robot.sense(None, [])
+    told = []
+    for _ in range(60):
+        robot.bench.iterate()
+        told = [message.role for message in robot.bench.port("team_message").sent]
+    assert told[0] == told[8] == "supporter"
+    assert told[-1] == "absent"
+
+
 def test_silence_makes_the_robot_forget_everything_in_time() -> None:
     four = team()
     for _ in range(20):
