@@ -1,6 +1,7 @@
 """Tests of components: a bench for one component, a system in memory for many or for a launch file."""
 
 from fwk.lcm.type_registry import use_types_of
+from fwk.model.errors import PlanError
 from fwk.testing.bench import Bench, program_bench
 from fwk.testing.expression import Expression, ExpressionError, reads_messages
 from fwk.testing.launched import launch_plan, settings_in, system_of
@@ -13,6 +14,7 @@ __all__ = [
     "Expression",
     "ExpressionError",
     "MemorySystem",
+    "PlanError",
     "Verdict",
     "Watch",
     "launch_plan",

@@ -12,8 +12,7 @@ from typing import TypeVar
 import cv2
 import numpy as np
 
-from fwk.model.errors import PlanError
-from fwk.testing import MemorySystem, settings_in, system_of
+from fwk.testing import MemorySystem, PlanError, settings_in, system_of
 from lcmtypes.core import picture_t
 from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t
 from procs.model.algebra import Floats
