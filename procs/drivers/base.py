@@ -147,9 +147,10 @@ class Base(Component):
 
     def _drive(self) -> None:
         robot = self.config.robot
-        passed_s = self.clock.iteration_s if self._driven_us < 0 else self.clock.since_s(self._driven_us)
+        usual_s = self.clock.iteration_s
+        passed_s = usual_s if self._driven_us < 0 else self.clock.since_s(self._driven_us)
         self._driven_us = self.clock.now_us
-        velocity = self._ramp.advance(self._wanted(), min(passed_s, _LONGEST_GAP_S))
+        velocity = self._ramp.advance(self._wanted(), min(passed_s, max(_LONGEST_GAP_S, usual_s)))
         possible = within_wheel_limit(velocity, robot.wheel_limit_m_s, robot.wheel_distance_m)
         self.wheel_command.value.wheel_m_s = list(wheels_of(possible, robot.wheel_distance_m))
         self.wheel_command.write()

@@ -66,7 +66,7 @@ class SimulatorConfig(Config):
     period_s: float = Setting(0.0, ge=0.0, frozen=True)
     """Logical time of a tick; 0: the system's."""
     command_timeout_s: PositiveFloat = 0.25
-    """Wheels and ball handling stop when their command is older."""
+    """Wheels and ball handling stop when their command is older, and older than the previous tick."""
     stuck_wheels: dict[str, tuple[Literal[1, 2, 3], ...]] = {}
     """Faults: wheels that do not turn, by robot: `{cyan3: [2]}`."""
 
@@ -246,7 +246,7 @@ class Simulator(Component):
 
     def _is_fresh(self, reader: Reads[wheel_command_t] | Reads[kicker_drive_t]) -> bool:
         age_s = self.clock.since_s(reader.header.time_us)
-        return reader.has_value and age_s <= self.config.command_timeout_s
+        return reader.has_value and age_s <= max(self.config.command_timeout_s, self._period_us / US_PER_S)
 
     def _sense(self, passed_s: float) -> None:
         # All sensors are read, with or without a reader: readers must not change the random numbers.

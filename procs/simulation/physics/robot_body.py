@@ -4,6 +4,7 @@ import math
 
 import pymunk
 
+from procs.model.geometry import wrap_rad
 from procs.model.kinematics import Velocity
 from procs.model.robot import RobotModel
 from procs.simulation.physics.arena import HULL, HULL_FILTER, ROBOT, ROBOT_FILTER
@@ -54,7 +55,7 @@ class Robot:
 
     def put(self, x_m: float, y_m: float, heading_rad: float) -> None:
         """Sets the robot down at rest."""
-        self.body.position, self.body.angle = (x_m, y_m), heading_rad
+        self.body.position, self.body.angle = (x_m, y_m), wrap_rad(heading_rad)  # so that a huge one can still change
         self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
 
     def gap_m(self, pose: Pose, x_m: float, y_m: float) -> float:

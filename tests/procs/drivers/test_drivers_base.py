@@ -51,7 +51,7 @@ def test_base_accelerates_within_its_limits() -> None:
     assert drive(base, 20, vx_m_s=1.0, enabled=True) == pytest.approx((1.0, 0.0, 0.0))
 
 
-@pytest.mark.parametrize("every", [1, 2, 5])
+@pytest.mark.parametrize("every", [1, 2, 5, 20])
 def test_acceleration_does_not_depend_on_the_ticks_between(every: int) -> None:
     base = bench(acceleration_m_s2=1.0, every=every)
     for _ in range(40):

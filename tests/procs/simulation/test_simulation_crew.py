@@ -39,6 +39,23 @@ def test_robot_on_the_ball_pushes_it_aside(x_m: float) -> None:
     assert math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s) < 0.1
 
 
+@pytest.mark.parametrize("heading_rad", [7.0, -1e6, 1e17])
+def test_robot_that_is_set_down_with_many_turns_can_turn(heading_rad: float) -> None:
+    world = bench()
+    world.port("place_robot").put(robot="cyan1", x_m=1.0, y_m=-2.0, heading_rad=heading_rad)
+    world.iterate()
+    before_rad = world.port("ground_truth").sent[-1].robots[0].heading_rad
+    assert before_rad == pytest.approx(math.remainder(heading_rad, math.tau), abs=1e-6)
+    for _ in range(10):
+        command = wheel_command_t(wheel_m_s=[0.2, 0.2, 0.2])
+        command.header.time_us = world.time_us
+        world.port("wheel_command", "cyan1").put(command)
+        world.iterate()
+    robot = world.port("ground_truth").sent[-1].robots[0]
+    assert math.remainder(robot.heading_rad - before_rad, math.tau) == pytest.approx(0.45, abs=0.1)
+    assert robot.omega_rad_s == pytest.approx(1.0, abs=0.01)
+
+
 @pytest.mark.parametrize(
     ("bearing_rad", "distance_m", "stays"),
     [(0.0, 0.33, True), (0.0, 0.3, False), (0.0, 0.22, False), (math.pi, 0.37, True), (math.pi, 0.34, False)],
