@@ -9,8 +9,8 @@ from procs.evaluation.particles import Particles
 from procs.localization.line_map import line_map
 from procs.localization.line_matching import LinePoints
 from procs.model.field import Field
-from procs.model.frames import rotation, wrap
-from procs.model.geometry import plausible
+from procs.model.frames import rotation
+from procs.model.geometry import plausible, wrap_rad
 
 _REACH_M = 7.0
 _POINTS = 60
@@ -54,7 +54,7 @@ class ParticleLocalization(Component):
         mean, covariance, together = self._particles.estimate()
         pose = self.pose.value
         pose.x_m, pose.y_m = mean[:2].tolist()
-        pose.heading_rad = wrap(float(mean[2]))
+        pose.heading_rad = wrap_rad(float(mean[2]))
         pose.covariance = covariance.tolist()
         pose.localized = together
         self.pose.write()
@@ -67,6 +67,6 @@ class ParticleLocalization(Component):
         now = self.odometry.value
         if self.odometry.refreshed and plausible(now.x_m, now.y_m, now.heading_rad):
             before, self._last = self._last or now, now
-            turn_rad = wrap(now.heading_rad - before.heading_rad)
+            turn_rad = wrap_rad(now.heading_rad - before.heading_rad)
             ahead_m = rotation(-before.heading_rad - turn_rad / 2) @ (now.x_m - before.x_m, now.y_m - before.y_m)
             self._particles.move(float(ahead_m[0]), float(ahead_m[1]), turn_rad)

@@ -8,7 +8,8 @@ import numpy as np
 
 from lcmtypes.soccer import pose_t
 from procs.evaluation.piece import Piece
-from procs.model.frames import Floats, wrap
+from procs.model.frames import Floats
+from procs.model.geometry import wrap_rad
 
 START_S = 4.0
 """Time until all robots know their places; nothing before counts."""
@@ -98,7 +99,7 @@ def _beliefs(piece: Piece, interface: str, robot: str) -> Iterator[_Belief]:
                 tick,
                 bool(pose.localized),
                 math.hypot(*error),
-                abs(wrap(pose.heading_rad - own.heading_rad)),
+                abs(wrap_rad(pose.heading_rad - own.heading_rad)),
                 jump_m,
                 carried,
             )

@@ -17,8 +17,8 @@ from procs.localization.self_localizer import LocalizerSettings, Motion, SelfLoc
 from procs.model.algebra import product
 from procs.model.expected_errors import EXPECTED
 from procs.model.field import Field
-from procs.model.frames import Floats, rotation, wrap
-from procs.model.geometry import plausible
+from procs.model.frames import Floats, rotation
+from procs.model.geometry import plausible, wrap_rad
 from procs.model.realism import Realism
 from procs.vision.calibration import MirrorConfig
 
@@ -215,4 +215,4 @@ class Localization(Component):
                 turn_rad = (rate_rad_s + self._yaw_rate_rad_s) / 2 * passed_s
                 self._turning_rad_s = (rate_rad_s + self._yaw_rate_rad_s) / 2
             self._yaw_rate_rad_s = rate_rad_s
-        return Motion(float(way_m[0]), float(way_m[1]), wrap(turn_rad), float(np.hypot(now.vx_m_s, now.vy_m_s)))
+        return Motion(float(way_m[0]), float(way_m[1]), wrap_rad(turn_rad), float(np.hypot(now.vx_m_s, now.vy_m_s)))

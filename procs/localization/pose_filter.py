@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from procs.model.estimation import predict, update
-from procs.model.frames import Floats, rotation, wrap
+from procs.model.frames import Floats, rotation
+from procs.model.geometry import wrap_rad
 
 _TICK_S = 0.05  # the errors below are those that add up in this time
 _PATH_ERROR = 0.1  # share of the way: wheel scale, encoder noise, slip
@@ -49,7 +50,7 @@ class PoseFilter:
         """
         interval_s = max(interval_s, 1e-3)
         innovation = pose - self.pose
-        innovation[2] = wrap(float(innovation[2]))
+        innovation[2] = wrap_rad(float(innovation[2]))
         share = -math.expm1(-interval_s / _STRAIN_MEMORY_S)
         self._strain_1_s += share * (innovation / interval_s - self._strain_1_s)
         error, self.covariance = update(_NO_ERROR, self.covariance, innovation, R=covariance, H=_UNIT)
@@ -68,4 +69,4 @@ def motion_errors(way_m: float, turn_rad: float, duration_s: float) -> tuple[flo
 
 def moved(pose: Floats, way_m: Floats, turn_rad: float) -> Floats:
     """Returns the pose (3) shifted by a way (2) in the world frame and turned."""
-    return np.array((pose[0] + way_m[0], pose[1] + way_m[1], wrap(float(pose[2]) + turn_rad)))
+    return np.array((pose[0] + way_m[0], pose[1] + way_m[1], wrap_rad(float(pose[2]) + turn_rad)))

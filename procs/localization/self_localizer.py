@@ -19,7 +19,8 @@ from procs.localization.line_map import LineMap
 from procs.localization.line_matching import LinePoints, Matches, match
 from procs.localization.pose_filter import PoseFilter
 from procs.model.expected_errors import EXPECTED, ExpectedErrors
-from procs.model.frames import Floats, wrap
+from procs.model.frames import Floats
+from procs.model.geometry import wrap_rad
 
 _LOST_DEVIATIONS = (5.0, 5.0, 0.3)  # m, m, rad: of the pose of a lost robot
 _FOUND_DEVIATIONS = (0.1, 0.1, 0.05)  # m, m, rad: of a pose that has just been found
@@ -154,7 +155,7 @@ class SelfLocalizer:
         heading_rad = float(self.pose[2])
         contradicted = False
         if compass_rad is not None:
-            deviation_rad = wrap(compass_rad - self.compass_offset_rad - heading_rad)
+            deviation_rad = wrap_rad(compass_rad - self.compass_offset_rad - heading_rad)
             self.compass_offset_rad += _share(interval_s, _COMPASS_MEMORY_S) * deviation_rad
             contradicted = abs(deviation_rad) > settings.compass_limit_rad
             heading_rad = compass_rad - self.compass_offset_rad
@@ -186,7 +187,7 @@ class SelfLocalizer:
         scores = np.where(np.abs(turned_rad) < self._settings.compass_limit_rad, found.scores, 0.0)
         self._hypotheses.update(found.poses, scores, interval_s)
         best = self._hypotheses.known[0]
-        self._filter = PoseFilter(np.array((*best.pose[:2], wrap(float(best.pose[2])))), _LOST_DEVIATIONS)
+        self._filter = PoseFilter(np.array((*best.pose[:2], wrap_rad(float(best.pose[2])))), _LOST_DEVIATIONS)
         decided = self._hypotheses.decided(self._settings.good_score)
         if decided is not None:
             self._found(decided.pose, _FOUND_DEVIATIONS, decided.score)

@@ -10,11 +10,6 @@ Flags = NDArray[np.bool_]
 Indices = NDArray[np.intp]
 
 
-def wrap(angle_rad: float) -> float:
-    """Returns the same direction between -pi and pi."""
-    return math.remainder(angle_rad, 2 * math.pi)
-
-
 def rotation(angle_rad: float) -> Floats:
     """Returns the matrix (2, 2) that turns vectors counter-clockwise."""
     cosine, sine = math.cos(angle_rad), math.sin(angle_rad)

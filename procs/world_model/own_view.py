@@ -8,8 +8,8 @@ import numpy as np
 from lcmtypes.robot import odometry_t
 from lcmtypes.soccer import ball_candidate_t, ball_percept_t, obstacle_percepts_t, obstacle_t, pose_t
 from procs.model.covariance import is_covariance
-from procs.model.frames import Floats, rotation, to_world, wrap
-from procs.model.geometry import plausible
+from procs.model.frames import Floats, rotation, to_world
+from procs.model.geometry import plausible, wrap_rad
 from procs.world_model.seen import Seen
 from procs.world_model.team import Mate, PlaceRow
 
@@ -155,4 +155,4 @@ def _rates(before: Floats, now: Floats, passed_s: float) -> tuple[float, float, 
     Wheels that slip, as in a scrum, turn at up to 4 rad/s while the robot does not; the pose follows the gyro.
     """
     (x_m, y_m, heading_rad), (before_x_m, before_y_m, before_rad) = now.tolist(), before.tolist()
-    return (x_m - before_x_m) / passed_s, (y_m - before_y_m) / passed_s, wrap(heading_rad - before_rad) / passed_s
+    return (x_m - before_x_m) / passed_s, (y_m - before_y_m) / passed_s, wrap_rad(heading_rad - before_rad) / passed_s

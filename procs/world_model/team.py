@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from lcmtypes.soccer import pass_agreement_t
-from procs.model.frames import Floats, wrap
+from procs.model.frames import Floats
+from procs.model.geometry import wrap_rad
 
 _LEAST_M = 0.02  # deviation of a position whose sender claims less
 _DRIFT_M_S = 0.5  # growth of that deviation while the mate drives on unseen
@@ -108,7 +109,7 @@ class Team:
             if passed_s <= 0.0:
                 return None
             if passed_s <= _TURNING_S and known.localized and mate.localized:
-                mate.omega_rad_s = wrap(mate.heading_rad - known.heading_rad) / passed_s
+                mate.omega_rad_s = wrap_rad(mate.heading_rad - known.heading_rad) / passed_s
         self._mates[mate.name] = mate
         return mate
 

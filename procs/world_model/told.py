@@ -4,8 +4,8 @@ import numpy as np
 
 from lcmtypes.soccer import team_message_t
 from procs.model.covariance import is_covariance
-from procs.model.frames import Floats, wrap
-from procs.model.geometry import plausible
+from procs.model.frames import Floats
+from procs.model.geometry import plausible, wrap_rad
 from procs.world_model.seen import Seen
 from procs.world_model.team import Mate
 
@@ -23,7 +23,7 @@ def mate_of(message: team_message_t, now_s: float) -> Mate | None:
         role=message.role,
         told_s=told_s,
         position_m=np.array((message.x_m, message.y_m)),
-        heading_rad=wrap(message.heading_rad),
+        heading_rad=wrap_rad(message.heading_rad),
         velocity_m_s=np.array((message.vx_m_s, message.vy_m_s)),
         localized=message.localized,
         covariance_m2=np.array(message.pose_covariance)[:2, :2],

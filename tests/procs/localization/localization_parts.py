@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from fwk.testing import Bench, system_of
 from lcmtypes.soccer import ground_truth_t, pose_t
 from procs.model.field import Field
-from procs.model.frames import rotation, wrap
+from procs.model.frames import rotation
+from procs.model.geometry import wrap_rad
 
 Floats = NDArray[np.float64]
 FIELD = Field()
@@ -92,7 +93,7 @@ class FakeRobot:
         x, y, heading = self.odometry.tolist()
         vx_m_s, vy_m_s, _ = self.measured.tolist()
         bench.port("odometry").put(x_m=x, y_m=y, heading_rad=heading, vx_m_s=vx_m_s, vy_m_s=vy_m_s)
-        compass = wrap(self.pose[2] + self.drift_rad + 0.03 * self.rng.standard_normal())
+        compass = wrap_rad(self.pose[2] + self.drift_rad + 0.03 * self.rng.standard_normal())
         bench.port("imu").put(
             heading_rad=compass, yaw_rate_rad_s=float(self.velocity[2] + 0.02 * self.rng.standard_normal())
         )
@@ -100,7 +101,7 @@ class FakeRobot:
     def error(self, bench: Bench) -> Floats:
         """Returns the newest published pose minus the true one; (3)."""
         sent = bench.port("pose").sent[-1]
-        return np.array((sent.x_m - self.pose[0], sent.y_m - self.pose[1], wrap(sent.heading_rad - self.pose[2])))
+        return np.array((sent.x_m - self.pose[0], sent.y_m - self.pose[1], wrap_rad(sent.heading_rad - self.pose[2])))
 
 
 def wander(seed: int, sets: tuple[str, ...], ticks: int = 400) -> tuple[Floats, Floats]:
@@ -117,7 +118,7 @@ def wander(seed: int, sets: tuple[str, ...], ticks: int = 400) -> tuple[Floats, 
     for place, told in zip(system.sent["world/ground_truth"], system.sent["cyan1/pose"], strict=True):
         pose, true = pose_t.decode(told), ground_truth_t.decode(place).robots[0]
         if pose.localized:
-            error = np.array((pose.x_m - true.x_m, pose.y_m - true.y_m, wrap(pose.heading_rad - true.heading_rad)))
+            error = np.array((pose.x_m - true.x_m, pose.y_m - true.y_m, wrap_rad(pose.heading_rad - true.heading_rad)))
             errors.append(error)
             surprises.append(float(error @ np.linalg.solve(pose.covariance, error)))
     return np.array(errors), np.array(surprises)
