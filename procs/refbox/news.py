@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from lcmtypes.soccer import game_event_t, game_state_t
 from procs.model.robot import number_of, team_of
 from procs.refbox.protocol import Command
-from procs.referee.reasons import OFF_FIELD, PARK, RESET
+from procs.referee.reasons import OFF_FIELD, Reason
 
 TEAMS = {game_state_t.TEAM_CYAN: "cyan", game_state_t.TEAM_MAGENTA: "magenta"}
 _SET_PIECES = {
@@ -83,7 +83,7 @@ def _robots(
 def _cause(robot: str, events: Sequence[game_event_t]) -> game_event_t | None:
     """Returns the newest decision that took a robot off the field."""
     for event in reversed(events):
-        if event.reason == PARK or (event.robot == robot and (event.card in _AWAY or event.reason in OFF_FIELD)):
+        if event.reason == Reason.PARK or (event.robot == robot and (event.card in _AWAY or event.reason in OFF_FIELD)):
             return event
     return None
 
@@ -91,7 +91,7 @@ def _cause(robot: str, events: Sequence[game_event_t]) -> game_event_t | None:
 def _is_new_match(before: game_state_t, now: game_state_t, events: Sequence[game_event_t]) -> bool:
     """Returns whether the match has begun anew: its history has, or time has gone back without a newer whistle."""
     newer = events[before.decisions : now.decisions]
-    if now.decisions < before.decisions or any(event.reason == RESET for event in newer):
+    if now.decisions < before.decisions or any(event.reason == Reason.RESET for event in newer):
         return True
     went_back = now.half == 1 and (before.half > 1 or now.time_in_half_s < before.time_in_half_s)
     return went_back and all(event.goal or event.card or event.reason in OFF_FIELD for event in newer)

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from procs.referee.cards import Card
 from procs.referee.ends import Team
+from procs.referee.reasons import Reason
 from procs.referee.restarts import State
 
 
@@ -17,4 +18,4 @@ class Call(NamedTuple):
     robot: str = ""
     """Robot that committed a foul, got the card, or leaves the field."""
     card: Card = Card.NONE
-    reason: str = ""
+    reason: Reason | None = None

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from procs.model.field import Field, Point
 from procs.referee.ends import Ends, Team, team_number
+from procs.referee.reasons import Reason
 from procs.referee.restarts import Restart, State, corner_kick, goal_kick, kick_off
 from procs.referee.sight import Sight
 from procs.referee.touches import Touches
@@ -16,7 +17,7 @@ class Verdict(NamedTuple):
     scorer: Team
     """Team that gets the goal; NONE: the goal does not count."""
     restart: Restart
-    reason: str = ""
+    reason: Reason | None = None
 
 
 def judge(place: Point, piece: State, touches: Touches, sight: Sight, ends: Ends, field: Field) -> Verdict:
@@ -26,7 +27,7 @@ def judge(place: Point, piece: State, touches: Touches, sight: Sight, ends: Ends
     if team is conceding:
         direct = piece is not State.DROP_BALL and touches.robots == {touches.taker} and len(sight.team(team)) > 1
         if direct and piece is not State.PLAY:
-            return Verdict(Team.NONE, corner_kick(conceding.other, place, field), "own goal straight from a set piece")
+            return Verdict(Team.NONE, corner_kick(conceding.other, place, field), Reason.OWN_GOAL)
         return Verdict(conceding.other, kick_off(conceding))
     reason = _why_not(piece, touches, sight, ends)
     if reason:
@@ -34,15 +35,15 @@ def judge(place: Point, piece: State, touches: Touches, sight: Sight, ends: Ends
     return Verdict(conceding.other, kick_off(conceding))
 
 
-def _why_not(piece: State, touches: Touches, sight: Sight, ends: Ends) -> str:
-    """Returns why the goal of the team that attacks does not count; empty if it does."""
+def _why_not(piece: State, touches: Touches, sight: Sight, ends: Ends) -> Reason | None:
+    """Returns why the goal of the team that attacks does not count; None if it does."""
     team = team_number(touches.last)
     if touches.place.x_m * ends.side_of(team) > 0:
-        return "shot from the own half"
+        return Reason.OWN_HALF
     if len(sight.team(team)) < 2:
-        return ""  # a robot that is alone has no mate to pass to
+        return None  # a robot that is alone has no mate to pass to
     if piece not in (State.PLAY, State.PENALTY) and len(touches.robots) < 2:
-        return "no second robot touched the ball"
+        return Reason.NO_SECOND_ROBOT
     if touches.owes_pass is team:
-        return "no pass since the ball was won in the own half"
-    return ""
+        return Reason.NO_PASS
+    return None

@@ -8,7 +8,7 @@ from procs.referee import halves, restarts
 from procs.referee.cards import Card
 from procs.referee.ends import Team, team_number
 from procs.referee.names import Names
-from procs.referee.reasons import REPAIRS
+from procs.referee.reasons import REPAIRS, Reason
 from procs.referee.refusals import SET_PIECES, begun_by, why_not
 from procs.referee.restarts import Restart, State
 from procs.referee.sight import Sight
@@ -29,6 +29,8 @@ HALVES = {
     "penalties": halves.PENALTIES,
 }
 """Commands that begin a part of the match."""
+COMMANDS = (*SET_PIECES, *GOALS, *CARDS, *REPAIRS, *HALVES, *PLAIN)
+"""All commands."""
 
 
 def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: str = "", names: Names = _USUAL) -> str:
@@ -55,7 +57,7 @@ def _set_piece(whistle: Whistle, sight: Sight, name: str, team: Team) -> str:
     if not team:
         return f"a {state.words} needs a team: cyan or magenta"
     if half:
-        whistle.begin_half(half, "by hand", team)
+        whistle.begin_half(half, Reason.BY_HAND, team)
         return ""
     place, field, ends = whistle.restart_place(sight.ball), whistle.rules.field, whistle.ends
     made: dict[State, Callable[[], Restart]] = {
@@ -74,7 +76,7 @@ def _set_piece(whistle: Whistle, sight: Sight, name: str, team: Team) -> str:
             if whistle.at_rest or whistle.shootout.shooter is team:
                 return ""
         whistle.shootout.shooter = team
-    whistle.interrupt(made[state](), "by hand")
+    whistle.interrupt(made[state](), Reason.BY_HAND)
     return ""
 
 
@@ -111,7 +113,7 @@ def _robot(whistle: Whistle, sight: Sight, name: str, team: Team, namespace: str
     if name in CARDS:
         whistle.card(robot, CARDS[name])
     else:
-        whistle.take_out(robot, name)
+        whistle.take_out(robot, Reason(name))
     return ""
 
 
@@ -136,7 +138,8 @@ def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
         case "stop":
             whistle.stop(sight.ball)
         case "drop_ball":
-            whistle.interrupt(restarts.dropped_ball(whistle.restart_place(sight.ball), whistle.rules.field), "by hand")
+            place = whistle.restart_place(sight.ball)
+            whistle.interrupt(restarts.dropped_ball(place, whistle.rules.field), Reason.BY_HAND)
         case "park":
             whistle.park(sight.robots)
         case "half_time":
@@ -146,6 +149,5 @@ def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
         case "reset":
             whistle.begin_match()
         case _:
-            known = [*SET_PIECES, *GOALS, *CARDS, *REPAIRS, *HALVES]
-            return f"no command '{name}'; there are {', '.join([*known, *PLAIN])}"
+            return f"no command '{name}'; there are {', '.join(COMMANDS)}"
     return ""

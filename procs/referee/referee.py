@@ -116,7 +116,7 @@ class Referee(Component):
         whistle, event = self._whistle, game_event_t()
         event.goal, event.card, event.state, event.team = call.goal, call.card, call.state, call.team
         event.half, event.time_in_half_s = whistle.half, whistle.time_in_half_s
-        event.robot, event.reason = self._names.namespace(call.robot), call.reason
+        event.robot, event.reason = self._names.namespace(call.robot), str(call.reason or "")
         if call.card or call.reason or call.state not in (State.HALF_TIME, State.FROZEN):
             self.match_history.value.events.append(event)
             self._has_grown = True

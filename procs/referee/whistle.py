@@ -17,7 +17,7 @@ from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.fouls.pushing import collision
 from procs.referee.fouls.set_piece import breach
 from procs.referee.line_up import misplaced_robots, too_few_robots
-from procs.referee.reasons import PARK, RESET
+from procs.referee.reasons import Reason
 from procs.referee.restarts import Restart, State
 from procs.referee.rules import Rules
 from procs.referee.shootout import Shootout, penalty_scored
@@ -110,9 +110,9 @@ class Whistle:
         """Begins the match anew: no goals, no cards, the kick-off of the first half."""
         self.score = {Team.CYAN: 0, Team.MAGENTA: 0}
         self.cards = Cards()
-        self.begin_half(halves.FIRST, RESET)
+        self.begin_half(halves.FIRST, Reason.RESET)
 
-    def begin_half(self, half: int, reason: str = "", first: Team = Team.NONE) -> None:
+    def begin_half(self, half: int, reason: Reason | None = None, first: Team = Team.NONE) -> None:
         """Begins a half with its kick-off, or the penalties with the first one; `first` is the team that has it."""
         ends = halves.ends_of(half, self.rules)
         self._changing_ends, self.ends = self._changing_ends or ends != self.ends, ends
@@ -132,7 +132,7 @@ class Whistle:
         if not self.stopped:
             self._ball.remember(ball, self.rules.field)
         if self.state is State.PLAY:
-            self.interrupt(restarts.ball_left_there(self._ball.left_at or ball, self.rules.field), "by hand")
+            self.interrupt(restarts.ball_left_there(self._ball.left_at or ball, self.rules.field), Reason.BY_HAND)
         elif not self.at_rest:
             self._enter(self.state, self.team, stopped=True)
         self.held, self._starting = True, False
@@ -158,7 +158,7 @@ class Whistle:
         self._enter(State.FROZEN, Team.NONE, stopped=True)
         self.calls.append(Call(self.state, Team.NONE))
 
-    def interrupt(self, restart: Restart, reason: str = "", robot: str = "") -> None:
+    def interrupt(self, restart: Restart, reason: Reason | None = None, robot: str = "") -> None:
         """Stops the game for a set piece and has the ball placed."""
         self._repeats = self._repeats + 1 if restart == self.restart and not self.stopped else 0
         self._enter(restart.state, restart.team, stopped=True)
@@ -193,14 +193,14 @@ class Whistle:
         if self.shootout.decided and self.rules.automatic:
             self.end_half()
         else:
-            self.interrupt(self._next_penalty(), "" if scored else "missed")
+            self.interrupt(self._next_penalty(), None if scored else Reason.MISSED)
 
     def card(self, robot: str, card: Card) -> None:
         """Shows a card."""
         shown = self.cards.show(robot, card, self.rules)
         self.calls.append(Call(self.state, team_number(robot), robot=robot, card=shown))
 
-    def take_out(self, robot: str, reason: str) -> None:
+    def take_out(self, robot: str, reason: Reason) -> None:
         """Takes a robot off the field without a card."""
         self.cards.take_out(robot, self.rules.repair_s)
         self.calls.append(Call(self.state, team_number(robot), robot=robot, reason=reason))
@@ -209,7 +209,7 @@ class Whistle:
         """Takes all robots off the field."""
         for robot in robots:
             self.cards.take_out(robot, self.rules.repair_s)
-        self.calls.append(Call(self.state, Team.NONE, reason=PARK))
+        self.calls.append(Call(self.state, Team.NONE, reason=Reason.PARK))
 
     def _follow(self, duration_s: float, sight: Sight) -> None:
         """Follows a game that is led by hand: set pieces become play, except for penalties that decide the match."""
@@ -275,7 +275,7 @@ class Whistle:
         if punished:
             self._give_free_kick(punished)
         elif self._stretch.deadlocked(scene):
-            self.interrupt(restarts.dropped_ball(ball, self.rules.field), "deadlock")
+            self.interrupt(restarts.dropped_ball(ball, self.rules.field), Reason.DEADLOCK)
 
     def _watch_set_piece(self, scene: Scene) -> None:
         ball, rules, touched = scene.sight.ball, self.rules, bool(scene.touches.robots)
@@ -290,7 +290,7 @@ class Whistle:
             self._play(ball)
         elif self.time_in_state_s >= longest_s:
             if self.state is State.PENALTY and not touched:
-                self.interrupt(self._goal_kick(), "penalty not taken in time")
+                self.interrupt(self._goal_kick(), Reason.NOT_TAKEN)
             else:
                 self._play(ball)
 

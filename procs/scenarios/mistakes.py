@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 
 from procs.model.field import Point
 from procs.model.robot import TEAM_NUMBERS, team_of
+from procs.referee.orders import COMMANDS
 from procs.simulation.physics.room import Room
 from procs.simulation.simulator import SimulatorConfig
 
@@ -86,10 +87,13 @@ def team_mistakes(robots: Sequence[str], settings: Mapping[str, Mapping[str, Any
 
 
 def command_mistakes(commands: Sequence[Any], everyone: Sequence[str], time_s: float) -> Iterator[str]:
-    """Yields the actions that come too late, or that concern a robot that is not there."""
+    """Yields the actions that come too late, and those with a robot or a command of the referee that does not exist."""
     for place, action in enumerate(commands):
         if action.at_s >= time_s:
             yield f"commands.{place}: at_s is {action.at_s:g}; the scenario ends at {time_s:g} s"
+        name = (action.referee or {}).get("name", "")
+        if action.referee is not None and name not in COMMANDS:
+            yield f"commands.{place}: referee: no command '{name}'; {right_name(name, COMMANDS)}"
         robot = (action.place_robot or {}).get("robot")
         if robot and robot not in everyone:
             yield f"commands.{place}: place_robot: no robot '{robot}'; {right_name(robot, everyone)}"

@@ -1,14 +1,16 @@
 """Words of soccer in the conditions of scenarios: `ball`, `play`, `distance(cyan2, ball)`, `x(magenta1)` ..."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from numbers import Real
 from typing import Any
 
 from fwk.testing import reads_messages
 from lcmtypes.soccer import game_state_t
 from procs.model.field import Point
+from procs.referee.reasons import Reason
 from procs.scenarios.mistakes import right_name
+from procs.simulation.physics.events import Kind
 
 Newest = Callable[[str], Any]
 
@@ -55,11 +57,6 @@ def _named(table: Mapping[str, int], kind: str, name: str) -> int:
     return table[name]
 
 
-@reads_messages
-def _reasons(newest: Newest) -> list[str]:
-    return [event.reason for event in newest("world/match_history").events if event.reason]
-
-
 def _place(newest: Newest, what: Any) -> Point:
     """Returns a place: a point, or that of a robot by its name."""
     if isinstance(what, tuple) and len(what) == 2 and all(isinstance(each, Real) for each in what):
@@ -73,28 +70,36 @@ def _place(newest: Newest, what: Any) -> Point:
     raise KeyError(f"no robot '{what}'; {right_name(str(what), [robot.name for robot in robots])}")
 
 
-class _Robots(list[str]):
-    """Names of robots, which knows those on the field: asking for another one is a mistake."""
+class _Names(list[str]):
+    """Names of one kind, of which all are known: a condition about another name is a mistake."""
 
-    def __init__(self, names: Iterable[str], everyone: list[str]) -> None:
+    def __init__(self, names: Iterable[str], kind: str, known: Collection[str]) -> None:
         super().__init__(names)
-        self._everyone = everyone
+        self._kind = kind
+        self._known = known
 
     def __contains__(self, name: object) -> bool:
-        if name not in self._everyone:
-            raise KeyError(f"no robot '{name}'; {right_name(str(name), self._everyone)}")
+        if name not in self._known:
+            raise KeyError(f"no {self._kind} '{name}'; {right_name(str(name), self._known)}")
         return super().__contains__(name)
 
 
 @reads_messages
+def _reasons(newest: Newest) -> list[str]:
+    given = [event.reason for event in newest("world/match_history").events if event.reason]
+    return _Names(given, "reason", list(map(str, Reason)))
+
+
+@reads_messages
 def _touches(newest: Newest) -> list[str]:
-    names = [event.robot for event in newest("world/match_events").events if event.kind in (4, 6)]
-    return _Robots(names, [robot.name for robot in newest("world/ground_truth").robots])
+    names = [event.robot for event in newest("world/match_events").events if event.kind in (Kind.TOUCH, Kind.KICK)]
+    return _Names(names, "robot", [robot.name for robot in newest("world/ground_truth").robots])
 
 
 @reads_messages
 def _hardest(newest: Newest) -> float:
-    return max((event.speed_m_s for event in newest("world/match_events").events if event.kind == 5), default=0.0)
+    speeds_m_s = (each.speed_m_s for each in newest("world/match_events").events if each.kind == Kind.COLLISION)
+    return max(speeds_m_s, default=0.0)
 
 
 def _axis(axis: int) -> Callable[[Newest], Callable[[Any], float]]:

@@ -6,6 +6,7 @@ In the opponents' areas a goalkeeper is a field player. A robot that is alone ke
 from procs.model.field import SIDES
 from procs.referee.ends import team_number
 from procs.referee.fouls.foul import Foul, Scene
+from procs.referee.reasons import Reason
 
 
 class Areas:
@@ -31,12 +32,12 @@ class Areas:
             if time_s > scene.rules.grace_s:
                 del self._forbidden_s[name]
                 return self._foul(
-                    scene, name, "goal area" if self._in_goal_area(scene, name) else "too many in an area"
+                    scene, name, Reason.IN_GOAL_AREA if self._in_goal_area(scene, name) else Reason.TOO_MANY_IN_AREA
                 )
         for name, time_s in self._inside_s.items():
             if time_s > scene.rules.area_s:
                 self._inside_s[name] = 0.0
-                return self._foul(scene, name, "too long in an area")
+                return self._foul(scene, name, Reason.TOO_LONG_IN_AREA)
         return None
 
     def _is_second(self, name: str, inside: dict[str, float]) -> bool:
@@ -54,5 +55,5 @@ class Areas:
         return any(scene.rules.field.in_goal_area(*scene.sight.robots[name], side) for side in SIDES)
 
     @staticmethod
-    def _foul(scene: Scene, name: str, reason: str) -> Foul:
+    def _foul(scene: Scene, name: str, reason: Reason) -> Foul:
         return Foul(name, reason, scene.sight.robots[name])

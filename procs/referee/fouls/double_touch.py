@@ -1,6 +1,7 @@
 """Double touch: the taker of a set piece may not play the ball again before another robot has (2016, laws 8 to 17)."""
 
 from procs.referee.fouls.foul import Foul, Scene
+from procs.referee.reasons import Reason
 
 
 def double_touch(scene: Scene) -> Foul | None:
@@ -8,4 +9,4 @@ def double_touch(scene: Scene) -> Foul | None:
     touches = scene.touches
     if not touches.again or not scene.sight.mates(touches.taker):
         return None
-    return Foul(touches.taker, "double touch", touches.place)
+    return Foul(touches.taker, Reason.DOUBLE_TOUCH, touches.place)

@@ -3,6 +3,7 @@
 import math
 
 from procs.referee.fouls.foul import Foul, Scene
+from procs.referee.reasons import Reason
 
 
 def dribbling(scene: Scene) -> Foul | None:
@@ -10,4 +11,4 @@ def dribbling(scene: Scene) -> Foul | None:
     carrier, ball = scene.carrier, scene.sight.ball
     if not carrier.robot or math.dist(carrier.since, ball) <= scene.rules.dribbling_m:
         return None
-    return Foul(carrier.robot, "dribbling", ball)
+    return Foul(carrier.robot, Reason.DRIBBLING, ball)

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from procs.model.field import Point
 from procs.referee.ends import Ends
+from procs.referee.reasons import Reason
 from procs.referee.rules import Rules
 from procs.referee.sight import Sight
 from procs.referee.touches import Carrier, Touches
@@ -13,7 +14,7 @@ class Foul(NamedTuple):
     """Breach of a rule by a robot."""
 
     robot: str
-    reason: str
+    reason: Reason
     place: Point
     """Place of the free kick."""
     direct: bool = False

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 from procs.model.field import Point
 from procs.referee.fouls.foul import Foul, Scene
+from procs.referee.reasons import Reason
 
 _STILL_M_S = 0.1  # a slower ball does not roll
 _BACK_M_S = 0.05  # a ball that comes faster towards its carrier is pulled back
@@ -44,7 +45,7 @@ class Holding:
         if self._held_s <= scene.rules.holding_s and self._pulled_m <= scene.rules.holding_m:
             return None
         self._held_s = self._pulled_m = 0.0
-        return Foul(robot, "holding", ball)
+        return Foul(robot, Reason.HOLDING, ball)
 
     def _rolls(self, scene: Scene) -> None:
         self._free_s += scene.duration_s

@@ -6,6 +6,7 @@ import math
 from procs.model.field import Point
 from procs.referee.ends import team_number
 from procs.referee.fouls.foul import Foul, Scene
+from procs.referee.reasons import Reason
 from procs.simulation.physics.events import Kind
 
 _TOUCHING_M = 0.02  # robots whose gap is smaller touch each other
@@ -18,7 +19,7 @@ def collision(scene: Scene) -> Foul | None:
     for event in scene.sight.events:
         hard = event.kind is Kind.COLLISION and event.speed_m_s > scene.rules.collision_m_s
         if hard and team_number(event.robot) is not team_number(event.other):
-            return Foul(event.robot, "collision", Point(event.x_m, event.y_m), direct=True)
+            return Foul(event.robot, Reason.COLLISION, Point(event.x_m, event.y_m), direct=True)
     return None
 
 
@@ -43,7 +44,7 @@ class Pushing:
         for (pusher, _), way_m in pushed_m.items():
             if way_m > scene.rules.pushing_m:
                 self._pushed_m = {}
-                return Foul(pusher, "pushing", robots[pusher], direct=True)
+                return Foul(pusher, Reason.PUSHING, robots[pusher], direct=True)
         return None
 
     @staticmethod

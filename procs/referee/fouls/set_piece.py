@@ -3,6 +3,7 @@
 from procs.referee.ends import Team, team_number
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.positions import too_near
+from procs.referee.reasons import Reason
 from procs.referee.restarts import Restart, State
 
 _INTRUSION_M = 0.3
@@ -16,13 +17,13 @@ def breach(scene: Scene, restart: Restart, excused: frozenset[str]) -> Foul | No
     rivals = [name for name in scene.sight.touching if team_number(name) is restart.team.other]
     taken = any(team_number(name) is restart.team for name in scene.touches.robots)  # by one that has left since, too
     if rivals and not taken:
-        return Foul(min(rivals), "touch before the set piece was taken", restart.spot)
+        return Foul(min(rivals), Reason.EARLY_TOUCH, restart.spot)
     if scene.touches.robots:
         return None
     near = too_near(restart, scene.sight.robots, scene.ends, scene.rules.field, _INTRUSION_M)
     intruders = sorted(set(near) - excused)
     if intruders:
-        return Foul(intruders[0], "too near to a set piece", restart.spot)
+        return Foul(intruders[0], Reason.TOO_NEAR, restart.spot)
     return _keeper_left_goal(scene, restart, excused)
 
 
@@ -33,4 +34,4 @@ def _keeper_left_goal(scene: Scene, restart: Restart, excused: frozenset[str]) -
     side = scene.ends.side_of(restart.team.other)
     if scene.rules.field.in_goal_area(*scene.sight.robots[keeper], side, _INTRUSION_M):
         return None
-    return Foul(keeper, "keeper left its area before the penalty", restart.spot)
+    return Foul(keeper, Reason.KEEPER_LEFT, restart.spot)

@@ -5,7 +5,7 @@ import pytest
 from lcmtypes.soccer import game_event_t, game_state_t
 from procs.refbox.news import news
 from procs.refbox.protocol import LONGEST, Command, ProtocolError, Stream, decode, encode
-from procs.referee.reasons import PARK, REPAIR, RESET, SUBSTITUTION
+from procs.referee.reasons import Reason
 
 ADDRESSES = {"cyan": "224.16.32.1", "magenta": "224.16.32.2"}
 
@@ -123,7 +123,7 @@ def test_match_that_begins_anew_is_a_reset() -> None:
 
 def test_reset_before_anything_happened_is_told() -> None:
     kick_off, reset = game_event_t(), game_event_t()
-    reset.reason = RESET
+    reset.reason = Reason.RESET
     before = state(game_state_t.KICK_OFF, 1, decisions=1, time_in_half_s=3.0)
     now = state(game_state_t.KICK_OFF, 1, decisions=1)
     assert [command.name for command in news(before, now, [reset])] == ["RESET", "FIRST_HALF", "KICKOFF"]
@@ -140,12 +140,16 @@ def left(robot: str, reason: str, card: int = 0) -> game_event_t:
 @pytest.mark.parametrize(
     ("events", "sent_off", "told"),
     [
-        ([left("cyan3", SUBSTITUTION)], ["cyan3"], [Command("SUBSTITUTION", "cyan", 3)]),
-        ([left("cyan3", REPAIR)], ["cyan3", "cyan4"], [Command("REPAIR", "cyan", 3), Command("REPAIR", "cyan", 4)]),
-        ([left("", PARK)], ["cyan3", "magenta2"], [Command("PARK")]),
-        ([left("", PARK), left("cyan3", SUBSTITUTION)], ["cyan3"], [Command("SUBSTITUTION", "cyan", 3)]),
-        ([left("cyan3", SUBSTITUTION), left("cyan3", REPAIR)], ["cyan3"], [Command("REPAIR", "cyan", 3)]),
-        ([left("cyan3", SUBSTITUTION), left("", PARK)], [], []),
+        ([left("cyan3", Reason.SUBSTITUTION)], ["cyan3"], [Command("SUBSTITUTION", "cyan", 3)]),
+        (
+            [left("cyan3", Reason.REPAIR)],
+            ["cyan3", "cyan4"],
+            [Command("REPAIR", "cyan", 3), Command("REPAIR", "cyan", 4)],
+        ),
+        ([left("", Reason.PARK)], ["cyan3", "magenta2"], [Command("PARK")]),
+        ([left("", Reason.PARK), left("cyan3", Reason.SUBSTITUTION)], ["cyan3"], [Command("SUBSTITUTION", "cyan", 3)]),
+        ([left("cyan3", Reason.SUBSTITUTION), left("cyan3", Reason.REPAIR)], ["cyan3"], [Command("REPAIR", "cyan", 3)]),
+        ([left("cyan3", Reason.SUBSTITUTION), left("", Reason.PARK)], [], []),
     ],
 )
 def test_robot_leaves_by_the_name_of_the_command(

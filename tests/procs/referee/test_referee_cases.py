@@ -9,6 +9,7 @@ from procs.model.field import Point
 from procs.referee import restarts
 from procs.referee.cards import Card
 from procs.referee.orders import carry_out
+from procs.referee.reasons import Reason
 from procs.referee.restarts import State
 from procs.referee.rules import Rules
 from procs.referee.shootout import Shootout
@@ -188,7 +189,7 @@ def test_match_does_not_wait_for_a_robot_with_a_red_card() -> None:
     script.whistle.interrupt(restarts.after_foul(Point(1.0, 1.0), CYAN, script.whistle.rules.field))
     script.wait(5.0)
     assert not script.whistle.stopped
-    script.whistle.take_out("magenta1", "repair")
+    script.whistle.take_out("magenta1", Reason.REPAIR)
     script.whistle.interrupt(restarts.after_foul(Point(1.0, 1.0), CYAN, script.whistle.rules.field))
     script.wait(19.0)
     assert script.whistle.stopped, "one under repair comes back"

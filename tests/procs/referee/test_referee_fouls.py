@@ -3,6 +3,7 @@
 import pytest
 
 from procs.model.field import Point
+from procs.referee.reasons import Reason
 from procs.referee.restarts import State
 from procs.simulation.physics.events import Event, Kind
 from tests.procs.referee.script import CYAN, MAGENTA, TICK_S, Script
@@ -24,7 +25,7 @@ def test_set_piece_goal_counts_only_after_a_second_robot() -> None:
 def test_taker_that_has_left_has_taken_the_set_piece() -> None:
     script = Script().started()
     script.touch("cyan2")
-    script.whistle.take_out("cyan2", "repair")
+    script.whistle.take_out("cyan2", Reason.REPAIR)
     script.roll(0.3, 0.0)
     script.touch("magenta2")
     assert (script.state, script.reasons) == ((State.KICK_OFF, CYAN, False), [])

@@ -78,6 +78,9 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
             "commands.0: place_robot: no robot 'cyan3'; did you mean 'cyan2'?",
         ),
         ("dummies: [cyan2]\nalways: ['\"cyan3\" not in touching']", ScenarioError, "no robot 'cyan3'; did you mean"),
+        ("always: ['\"duoble touch\" not in reasons']", ScenarioError, "no reason 'duoble touch'; did you mean 'double t"),
+        ("at_end: [reasons]\ncommands: [{referee: {name: kickof}}]", ScenarioError, "no command 'kickof'; did you mean 'k"),
+        ("at_end: [reasons]\ncommands: [{referee: {team: cyan}}]", ScenarioError, "no command ''; there are kickoff"),
         ("robots: [cyan2]\nplaces: {cyan2: [100, 0, 0]}\nat_end: [ball_speed < 1]", ScenarioError, "outside the walls"),
         ("dummies: [a1, b1]\nplaces: {a1: [0, 0, 0], b1: [0, 0, 0]}\nat_end: [touching]", ScenarioError, "0 m apart"),
         ("robots: [cyan2]\nplaces: {cyan2: [.nan, 0, 0]}", ScenarioError, "places.cyan2.0: .* finite number"),
@@ -149,9 +152,9 @@ def test_file_that_cannot_be_read_is_named(
 
 
 def test_command_that_is_refused_breaks_a_scenario(tmp_path: Path) -> None:
-    text = "dummies: [cyan2]\ncommands: [{referee: {name: pause}}]\nalways: [x(cyan2) < 0]\ntime_s: 0.3\n"
+    text = "dummies: [cyan2]\ncommands: [{referee: {name: subgoal, team: cyan}}]\nalways: [x(cyan2) < 0]\ntime_s: 0.3\n"
     (refused,) = run(written(tmp_path, text)).broken
-    assert refused.startswith("refused: no command 'pause'; there are kickoff")
+    assert refused == "refused: cyan has no goal to take back"
 
 
 def test_command_has_nothing_of_the_one_before(tmp_path: Path) -> None:
