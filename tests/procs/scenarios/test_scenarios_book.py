@@ -78,8 +78,16 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
             "commands.0: place_robot: no robot 'cyan3'; did you mean 'cyan2'?",
         ),
         ("dummies: [cyan2]\nalways: ['\"cyan3\" not in touching']", ScenarioError, "no robot 'cyan3'; did you mean"),
-        ("always: ['\"duoble touch\" not in reasons']", ScenarioError, "no reason 'duoble touch'; did you mean 'double t"),
-        ("at_end: [reasons]\ncommands: [{referee: {name: kickof}}]", ScenarioError, "no command 'kickof'; did you mean 'k"),
+        (
+            "always: ['\"duoble touch\" not in reasons']",
+            ScenarioError,
+            "no reason 'duoble touch'; did you mean 'double",
+        ),
+        (
+            "at_end: [reasons]\ncommands: [{referee: {name: kickof}}]",
+            ScenarioError,
+            "no command 'kickof'; did you mean",
+        ),
         ("at_end: [reasons]\ncommands: [{referee: {team: cyan}}]", ScenarioError, "no command ''; there are kickoff"),
         ("robots: [cyan2]\nplaces: {cyan2: [100, 0, 0]}\nat_end: [ball_speed < 1]", ScenarioError, "outside the walls"),
         ("dummies: [a1, b1]\nplaces: {a1: [0, 0, 0], b1: [0, 0, 0]}\nat_end: [touching]", ScenarioError, "0 m apart"),
