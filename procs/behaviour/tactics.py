@@ -144,6 +144,8 @@ class Tactics:
             return Order("block", game.spot, intention="keep distance")
         if self.passing.said.passer:  # the ball is on its way, but not yet in play
             return self._go_for_ball(view)
+        if holds_ball and not game.stopped:
+            return self._play_ball(view)
         taker = Robot(view.own.name, game.spot, view.own.heading_rad)
         mates = field_players(view)
         if not game.stopped:  # the taker has turned to its receiver
@@ -161,8 +163,6 @@ class Tactics:
             leaving = any(math.dist(other.place, game.spot) < _LEAVING_M for other in view.opponents)
             place, speed_m_s = formation.taker_place(game.spot, way_rad), _GENTLE_M_S if leaving else 0.0
             return Order("goto", place, way_rad, "take set piece", speed_m_s)
-        if holds_ball:
-            return self._play_ball(view)
         return Order("get_ball", game.spot, way_rad, "take set piece")
 
     def _next_step(self, view: View, place: Point, game: Game) -> Point:
@@ -197,7 +197,9 @@ class Tactics:
         if self._taking and self._penalty:
             return self._play.take_penalty(view)
         if self._taking and view.mates:
-            return self._agreed(self._play.take_set_piece(view, self._receiver))
+            order = self._play.take_set_piece(view, self._receiver)
+            self._receiver = order.receiver or self._receiver
+            return self._agreed(order)
         if self.passing.late:
             self.passing.drop()
         order = self._play.decide(view)

@@ -163,6 +163,20 @@ def test_taker_keeps_its_receiver_once_the_ball_may_be_played() -> None:
     assert order.heading_rad == pytest.approx(math.pi / 4)
 
 
+def test_taker_keeps_to_another_receiver_when_the_first_is_blocked() -> None:
+    spot, tactics = Point(0.0, 0.0), Tactics(FIELD)
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=spot)
+    own, first = robot("cyan2", -0.3, 0.0), robot("cyan3", 4.0, 0.0, role=SUPPORTER)
+    second, rival = agreed(robot("cyan4", 0.0, 4.0, role=DEFENDER)), robot("", 2.0, 0.0)
+    free, blocked = (view(own, ball(*spot), (first, second), rivals) for rivals in ((), (rival,)))
+    tactics.decide(free, game, job(ATTACKER), False, 0.05)
+    game = game._replace(stopped=False)
+    assert tactics.decide(free, game, job(ATTACKER), False, 0.05).heading_rad == 0.0
+    orders = [tactics.decide(seen, game, job(ATTACKER), True, 0.05) for seen in [blocked] * 4 + [free, blocked] * 4]
+    assert [order.receiver for order in orders[2:]] == ["cyan4"] * 10
+    assert [order.skill for order in orders[4:]] == ["pass"] * 8, "the second has accepted"
+
+
 @pytest.mark.parametrize(
     ("spot", "most_rad"), [(Point(7.4, -1.0), 0.5), (Point(2.0, 6.9), 0.8), (Point(-7.4, 3.5), 0.5)]
 )
