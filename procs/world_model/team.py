@@ -10,8 +10,9 @@ from lcmtypes.soccer import pass_agreement_t
 from procs.model.frames import Floats
 from procs.model.geometry import wrap_rad
 
-_LEAST_M = 0.02  # deviation of a position whose sender claims less
-_DRIFT_M_S = 0.5  # growth of that deviation while the mate drives on unseen
+_LEAST_M = 0.005  # deviation of a position whose sender claims less
+_ACCELERATION_M_S2 = 3.0  # deviation of a mate's acceleration since its message
+_DRIFT_M_S = 0.5  # most by which its acceleration moves it from the extrapolated place, in a second
 _TURNING_S = 0.25  # messages further apart do not tell the speed of turning
 _EXTRAPOLATED_S = 0.5  # longest extrapolation of a velocity
 
@@ -80,8 +81,9 @@ class Places:
         for told_s, x_m, y_m, vx_m_s, vy_m_s, xx_m2, xy_m2, yx_m2, yy_m2 in self._mates:
             passed_s = time_s - told_s
             extrapolated_s = min(_EXTRAPOLATED_S, max(-_EXTRAPOLATED_S, passed_s))
-            drift_m = _LEAST_M + _DRIFT_M_S * min(drifts_s, abs(passed_s))
-            drift_m2 = drift_m * drift_m
+            drifted_s = min(drifts_s, abs(passed_s))
+            drift_m = min(_ACCELERATION_M_S2 / 2 * drifted_s, _DRIFT_M_S) * drifted_s
+            drift_m2 = _LEAST_M**2 + drift_m * drift_m
             x_m, y_m = x_m + vx_m_s * extrapolated_s, y_m + vy_m_s * extrapolated_s
             rows.append((x_m, y_m, vx_m_s, vy_m_s, xx_m2 + drift_m2, xy_m2, yx_m2, yy_m2 + drift_m2))
         return rows

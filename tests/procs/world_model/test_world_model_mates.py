@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lcmtypes.soccer import obstacle_t, team_message_t
+from procs.world_model.team import Mate, Places
 from tests.procs.world_model.team_on_bench import PERIOD_S, Robot, TeamOnBench, decoded, team
 
 
@@ -130,6 +131,23 @@ def test_mates_covariance_is_the_one_that_it_states() -> None:
         deviations_m.append(math.sqrt(robot.world.mates[0].covariance_m2[0][0]))
     assert deviations_m[0] < 0.1
     assert deviations_m[1] > 0.4
+
+
+@pytest.mark.parametrize("passed_s", [0.04, 0.1, 0.3, 0.5])
+def test_claim_about_a_mate_covers_what_it_does_meanwhile(passed_s: float) -> None:
+    """A mate told its place with a deviation of 2 cm, and has since driven on with other accelerations."""
+    rng, insides, told_m2 = np.random.default_rng(5), [], 0.02**2
+    velocity_m_s = np.array((1.5, -0.5))
+    for _ in range(400):
+        error_m, pushed_m_s2 = rng.normal(0.0, 0.02, 2), rng.normal(0.0, 1.5, 2)
+        true_m = velocity_m_s * passed_s + pushed_m_s2 * passed_s**2 / 2
+        mate = Mate("cyan3", "", 10.0, error_m, 0.0, velocity_m_s, True, np.eye(2) * told_m2)
+        places_m, covariances_m2 = Places([mate]).at(10.0 + passed_s)
+        missed_m = places_m[0] - true_m
+        insides.append(missed_m @ np.linalg.solve(covariances_m2[0], missed_m) < 5.99)
+    assert np.mean(insides) > 0.90
+    if passed_s <= 0.1:
+        assert np.mean(insides) < 0.998, "a claim that is much too wide tells little"
 
 
 def test_ball_in_the_mouth_of_a_turning_mate_turns_with_it() -> None:
