@@ -5,7 +5,7 @@ import multiprocessing
 import os
 import signal
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from importlib import import_module
@@ -27,13 +27,15 @@ class CampaignError(RuntimeError):
 class Processes(Executor):
     """Processes of this machine; one that dies fails its own run alone, and a new one takes its place."""
 
-    def __init__(self, jobs: int) -> None:
+    def __init__(self, jobs: int, limit_s: float | None = None) -> None:
+        """Begins the processes; a call that takes longer than the limit fails, and its process is ended."""
+        self._limit_s = limit_s
         self._others = multiprocessing.active_children()
         self._lock = Lock()
         self._ended = False
-        self._idle: SimpleQueue[ProcessPoolExecutor] = SimpleQueue()
+        self._idle: SimpleQueue[_Process] = SimpleQueue()
         for _ in range(jobs):
-            self._idle.put(self._begun())
+            self._idle.put(_Process())
         self._threads = ThreadPoolExecutor(jobs)  # a thread waits for each process; the kernel ends those of dead ones
 
     def submit(self, work: Callable[..., Any], /, *words: Any, **named: Any) -> Future[Any]:
@@ -44,7 +46,7 @@ class Processes(Executor):
         """Ends the processes after the calls that wait, or that have begun if the others are cancelled."""
         self._threads.shutdown(wait, cancel_futures=cancel_futures)
         while not self._idle.empty():
-            self._idle.get().shutdown(wait)
+            self._idle.get().pool.shutdown(wait)
 
     def kill(self) -> None:
         """Ends all calls at once: those that have begun, and those that wait."""
@@ -58,22 +60,38 @@ class Processes(Executor):
     def _run(self, work: Callable[..., Any], words: tuple[Any, ...], named: dict[str, Any]) -> Any:
         process = self._idle.get()
         try:
-            return process.submit(work, *words, **named).result()
+            running = process.pool.submit(work, *words, **named)
+            if process.overruns(running, self._limit_s):
+                process = self._renewed(process)
+                raise CampaignError(f"it took longer than --limit, {self._limit_s:g} s, and was ended")
+            return running.result()
         except BrokenProcessPool as error:
-            process.shutdown()
-            with self._lock:
-                if not self._ended:
-                    process = self._begun()
+            process = self._renewed(process)
             raise CampaignError("its process died; perhaps a program killed it, or the memory was full") from error
         finally:
             self._idle.put(process)
 
-    @staticmethod
-    def _begun() -> ProcessPoolExecutor:
-        """Returns a process that has begun; one at a time, as each inherits the files that are open."""
-        process = ProcessPoolExecutor(1, initializer=_begin, initargs=(os.getpid(),))
-        process.submit(os.getpid)
-        return process
+    def _renewed(self, process: "_Process") -> "_Process":
+        """Returns a new process in the place of a dead one, as long as calls may come."""
+        process.pool.shutdown()
+        with self._lock:  # one at a time, as each inherits the files that are open
+            return process if self._ended else _Process()
+
+
+class _Process:
+    """A process that has begun, for one call at a time."""
+
+    def __init__(self) -> None:
+        self.pool = ProcessPoolExecutor(1, initializer=_begin, initargs=(os.getpid(),))
+        self._pid = self.pool.submit(os.getpid)
+
+    def overruns(self, running: Future[Any], limit_s: float | None) -> bool:
+        """Waits for a call; ends the process, and returns True, if the call takes longer than the limit."""
+        pid = self._pid.result()
+        if limit_s is None or wait((running,), limit_s).done:
+            return False
+        os.kill(pid, signal.SIGKILL)
+        return True
 
 
 def _begin(parent: int) -> None:
@@ -83,16 +101,17 @@ def _begin(parent: int) -> None:
 
 
 @contextmanager
-def executor_of(jobs: int, cluster: str = "") -> Iterator[Executor]:
+def executor_of(jobs: int, cluster: str = "", limit_s: float | None = None) -> Iterator[Executor]:
     """Yields `jobs` processes of this machine, or the workers of the Dask cluster whose scheduler has an address.
 
-    Ctrl-C ends the processes of this machine at once.
+    Ctrl-C ends the processes of this machine at once, and a run that takes longer than the limit ends its process.
+    Runs of a cluster have no limit: nothing ends a worker from outside.
 
     Raises:
         CampaignError: Dask is not installed, there is no scheduler at that address, or it has no worker.
     """
     if not cluster:
-        with Processes(jobs) as processes:
+        with Processes(jobs, limit_s) as processes:
             try:
                 yield processes
             except KeyboardInterrupt:  # runs that have begun, or wait, would be played to their end

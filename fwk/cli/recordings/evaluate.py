@@ -4,8 +4,9 @@ import hashlib
 import os
 import re
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager, contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
@@ -32,6 +33,12 @@ def eval(  # noqa: A001 - the name of the command
         float, typer.Option("--time", parser=seconds, metavar="SECONDS", help="logical time of each run")
     ] = 25.0,
     jobs: Annotated[int, typer.Option(min=0, help="runs at the same time; 0: one a processor")] = 0,
+    limit_s: Annotated[
+        float | None,
+        typer.Option(
+            "--limit", parser=seconds, metavar="SECONDS", help="wall time of a run; one that takes longer fails"
+        ),
+    ] = None,
     cluster: Annotated[str, typer.Option(metavar="ADDRESS", help="scheduler of a Dask cluster instead")] = "",
     sets: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="override a setting; repeatable")
@@ -47,6 +54,9 @@ def eval(  # noqa: A001 - the name of the command
 
     Exit codes: 0 measured; 1 a run failed, or there is no cluster; 2 bad input, or a folder that cannot hold results.
     """
+    if cluster and limit_s is not None:
+        typer.echo("error: nothing ends runs on a cluster; leave out --limit, or --cluster", err=True)
+        raise typer.Exit(BAD_INPUT)
     try:
         plan = load_plan(file, LaunchOptions(sets=sets or ()))
     except PlanError as error:
@@ -65,7 +75,11 @@ def eval(  # noqa: A001 - the name of the command
             former = campaign.of_other_code(numbers)
         if former:
             typer.echo(f"note: {_formerly(former)}; remove their files from {folder} to play them again", err=True)
-        failure = _play(campaign, work, file, time_s, numbers, jobs, cluster)
+
+        def executor(runs: int) -> AbstractContextManager[Executor]:
+            return executor_of(min(jobs or os.cpu_count() or 1, runs), cluster, limit_s)
+
+        failure = _play(campaign, work, file, time_s, numbers, executor)
         results, text = campaign.results(numbers), ""
         if results:
             with _refused_by(folder):
@@ -80,8 +94,17 @@ def eval(  # noqa: A001 - the name of the command
         raise typer.Exit(FAILED)
 
 
-def _play(campaign: Campaign, work: Evaluation, file: str, time_s: float, seeds: range, jobs: int, cluster: str) -> str:
+def _play(
+    campaign: Campaign,
+    work: Evaluation,
+    file: str,
+    time_s: float,
+    seeds: range,
+    executor_for: Callable[[int], AbstractContextManager[Executor]],
+) -> str:
     """Plays the runs that have no whole result yet; returns why runs have none, or an empty text.
+
+    A terminal shows a bar; a file gets a line for each run.
 
     Raises:
         FolderError: a result cannot be read or written.
@@ -91,15 +114,17 @@ def _play(campaign: Campaign, work: Evaluation, file: str, time_s: float, seeds:
     left = campaign.missing(seeds)
     if not left:
         return ""
-    label = f"{len(left)} of {len(seeds)} runs"
+    label, shown = f"playing {len(left)} of {len(seeds)} runs", sys.stderr.isatty()
     try:
         with (
             campaign.alone(),
-            executor_of(min(jobs or os.cpu_count() or 1, len(left)), cluster) as executor,
+            executor_for(len(left)) as executor,
             typer.progressbar(length=len(left), label=label, file=sys.stderr) as bar,
         ):
-            for _ in campaign.play(work, file, time_s, left, executor):
+            for played, seed in enumerate(campaign.play(work, file, time_s, left, executor), 1):
                 bar.update(1)
+                if not shown:
+                    typer.echo(f"{played} of {len(left)}: seed {seed}", err=True)
     except FolderError:
         raise
     except CampaignError as error:

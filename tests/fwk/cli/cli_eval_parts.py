@@ -1,6 +1,7 @@
 """An evaluation that measures nothing but its own arguments, of a component that does nothing."""
 
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,13 +20,15 @@ class Idle(Component):
 
 
 def measured(file: str, time_s: float, seed: int, sets: Sequence[str] = ()) -> dict[str, Any]:
-    """Returns the arguments and the number of the process; seed 13 fails, 66 dies, and 77 exits."""
+    """Returns the arguments and the number of the process; seed 13 fails, 66 dies, 77 exits, and 88 hangs."""
     if seed == 13:
         raise ValueError("an unlucky seed")
     if seed == 66:
         os._exit(1)
     if seed == 77:
         sys.exit("no more")
+    if seed == 88:
+        signal.pause()
     return {"time_s": time_s, "seed": seed, "process": os.getpid(), "sets": list(sets)}
 
 

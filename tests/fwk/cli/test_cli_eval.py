@@ -46,7 +46,7 @@ def test_interrupted_evaluation_resumes(launch: Path) -> None:
 def test_no_more_processes_than_missing_runs(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[int] = []
 
-    def counted(jobs: int, cluster: str) -> Any:
+    def counted(jobs: int, cluster: str, limit_s: float | None) -> Any:
         asked.append(jobs)
         return ThreadPoolExecutor(jobs)
 
@@ -231,6 +231,24 @@ def test_run_that_ends_its_process_fails_alone(launch: Path, seed: int, cause: s
     code, table, said = evaluated(str(launch), "--seeds", f"{seed - 2}..{seed + 5}", "--jobs", "2")
     assert (code, table) == (1, " ".join(str(each) for each in range(seed - 2, seed + 6) if each != seed) + "\n")
     assert f"error: 1 of 8 runs failed: seed {seed}: {cause}" in said
+
+
+def test_run_that_hangs_fails_alone_at_its_limit(launch: Path) -> None:
+    words = (str(launch), "--seeds", "87..91", "--jobs", "2", "--limit", "2")
+    code, table, said = evaluated(*words)
+    assert (code, table) == (1, "87 89 90 91\n")
+    assert "error: 1 of 5 runs failed: seed 88: it took longer than --limit, 2 s, and was ended" in said
+    assert not [each for each in psutil.Process().children() if each.status() == psutil.STATUS_RUNNING]
+
+
+def test_limit_of_runs_on_a_cluster_is_refused(launch: Path) -> None:
+    code, _, said = evaluated(str(launch), "--limit", "2", "--cluster", "tcp://127.0.0.1:9")
+    assert (code, said) == (2, "error: nothing ends runs on a cluster; leave out --limit, or --cluster\n")
+
+
+def test_file_gets_a_line_for_each_run(launch: Path) -> None:
+    said = evaluated(str(launch), "--seeds", "4..5", "--jobs", "1")[2]
+    assert said.splitlines() == ["playing 2 of 2 runs", "1 of 2: seed 4", "2 of 2: seed 5"]
 
 
 def test_failures_of_one_cause_are_told_together(tmp_path: Path) -> None:
