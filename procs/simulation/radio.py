@@ -51,10 +51,13 @@ class Radio(Component):
         """Sends the messages of this tick, and delivers those that arrive until the next, in which robots read them."""
         settings = chosen(PRESETS[self.config.realism], self.config)
         self._links.pass_time(self.clock.now_us, settings)
-        for robot, said in self.messages.items():
-            for message in said.fresh:
-                size_bytes = len(message.encode()) if settings.bandwidth_bit_s else 0
-                self._links.send(robot, message, self.clock.now_us, settings, size_bytes)
+        waiting = [
+            (robot, message, len(message.encode()) if settings.bandwidth_bit_s else 0)
+            for robot, said in self.messages.items()
+            for message in said.fresh
+        ]
+        for robot, message, size_bytes in self._links.in_turn(waiting):
+            self._links.send(robot, message, self.clock.now_us, settings, size_bytes)
         read_us = self.clock.now_us + round(self.clock.period_s * US_PER_S)
         for robot, arrived in self._links.receive(read_us).items():
             inbox = self.inboxes[robot]

@@ -57,6 +57,8 @@ class RadioLinks(Generic[T]):
         """Pair of robots to the time at which the interruptions of their link have ended."""
         self._passed_us = -1
         self._credit_bit = 0.0
+        self._sent_us: dict[str, int] = {}
+        """Time of the last message of each robot that the channel had room for."""
 
     def pass_time(self, now_us: int, settings: RadioSettings) -> None:
         """Interrupts links and refills the channel; call it once a tick, before messages are sent."""
@@ -74,11 +76,21 @@ class RadioLinks(Generic[T]):
                 back_us = now_us + round(-settings.outage_s * math.log1p(-length) * 1e6)
                 self._back_us[frozenset(pair)] = max(back_us, self._back_us.get(frozenset(pair), 0))
 
+    def in_turn(self, waiting: list[tuple[str, T, int]]) -> list[tuple[str, T, int]]:
+        """Returns the messages of a tick, with sender and size in bytes, in the order in which the channel takes them.
+
+        If it has too little room for all, robots that have waited longest are first.
+        """
+        if sum(8 * size_bytes for _, _, size_bytes in waiting) <= self._credit_bit:
+            return waiting
+        return sorted(waiting, key=lambda each: self._sent_us.get(each[0], -1))
+
     def send(self, sender: str, message: T, now_us: int, settings: RadioSettings, size_bytes: int = 0) -> None:
         """Sends to all receivers but the sender. Draws two random numbers a receiver, whatever the settings."""
         too_much = settings.bandwidth_bit_s > 0 and self._credit_bit <= 0
         if not too_much:
             self._credit_bit -= 8 * size_bytes  # below 0 for a message that takes longer than a burst
+            self._sent_us[sender] = now_us
         for receiver in self._receivers:
             if receiver == sender:
                 continue

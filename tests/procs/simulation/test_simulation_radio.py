@@ -196,3 +196,14 @@ def test_very_narrow_channel_passes_what_it_can() -> None:
         say(bench, "cyan1")
         bench.iterate()
     assert len(bench.port("inboxes", "cyan2").sent) == pytest.approx(2.0 * 20, abs=2)
+
+
+def test_robots_share_a_narrow_channel_evenly() -> None:
+    bench = radio(bandwidth_bit_s=40_000.0)
+    for _ in range(400):
+        for robot in TEAM:
+            say(bench, robot)
+        bench.iterate()
+    said = [m.robot for robot in TEAM for each in bench.port("inboxes", robot).sent for m in each.messages]
+    counts = [said.count(robot) for robot in TEAM]
+    assert min(counts) > 0.9 * max(counts) > 0
