@@ -29,6 +29,7 @@ BAR: Colour = (32, 28, 26)
 TEXT: Colour = (245, 245, 245)
 
 _TAIL_S = 0.12  # the ball's tail shows its way of this time
+_HIGHER = (0.3, -0.4)  # shift of a flying ball's shadow for each metre of height
 _MARKER = 0.64  # radius of the team marker, as a share of the robot's
 
 
@@ -87,8 +88,9 @@ class TopView:
     def _draw_ball(self, canvas: Canvas, truth: ground_truth_t) -> None:
         tail = (truth.ball_x_m - _TAIL_S * truth.ball_vx_m_s, truth.ball_y_m - _TAIL_S * truth.ball_vy_m_s)
         place, radius_m = (truth.ball_x_m, truth.ball_y_m), self._ball_radius_m
+        right_m, up_m = 0.03 + _HIGHER[0] * truth.ball_z_m, -0.04 + _HIGHER[1] * truth.ball_z_m
+        canvas.disc((place[0] + right_m, place[1] + up_m), radius_m, SHADOW)
         canvas.line(tail, place, 0.05, BALL)
-        canvas.disc((place[0] + 0.03, place[1] - 0.04), radius_m, SHADOW)
         canvas.disc(place, radius_m, BALL_EDGE)
         canvas.disc(place, 0.77 * radius_m, BALL)
 

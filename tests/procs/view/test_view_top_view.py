@@ -9,7 +9,7 @@ from procs.model.field import Field
 from procs.simulation.physics.reports import field_message
 from procs.view.ground import GRASS, WHITE
 from procs.view.palette import TEAM_COLOURS
-from procs.view.top_view import BALL, BAR, TopView, picture, picture_with_beliefs
+from procs.view.top_view import BALL, BAR, SHADOW, TopView, picture, picture_with_beliefs
 from procs.vision.colours import Picture
 
 VIEW = TopView(960)
@@ -50,6 +50,14 @@ def test_robots_have_team_colours_and_ball_is_at_its_position() -> None:
     assert colour_at(drawn, -5.0, 0.88) == pytest.approx(TEAM_COLOURS["cyan"], abs=12)
     assert colour_at(drawn, 4.0, -3.12) == pytest.approx(TEAM_COLOURS["magenta"], abs=12)
     assert colour_at(drawn, 3.0, 2.0) == pytest.approx(BALL, abs=12)
+
+
+def test_shadow_of_a_flying_ball_is_away_from_it() -> None:
+    flying = truth()
+    flying.ball_z_m = 2.0
+    drawn = VIEW.draw(flying)
+    assert colour_at(drawn, 3.0, 2.0) == pytest.approx(BALL, abs=12)
+    assert colour_at(drawn, 3.63, 1.16) == pytest.approx(SHADOW, abs=12)
 
 
 def test_heading_is_drawn() -> None:
