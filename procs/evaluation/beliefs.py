@@ -40,8 +40,8 @@ class _Ball(NamedTuple):
 
     error_m2: float
     velocity_error_m2_s2: float
-    inside: bool
-    """The truth lies within the ellipse that holds it with a probability of 95 % by the robot's own covariance."""
+    surprise: float
+    """Squared error by the robot's own covariance, two on average if it is honest (NEES)."""
     near: bool
     speed_m_s: float
     holder: str
@@ -51,6 +51,11 @@ class _Ball(NamedTuple):
     flies: bool
     """The ball is in the air."""
     height_error_m2: float
+
+    @property
+    def inside(self) -> bool:
+        """The truth lies within the ellipse that holds it with a probability of 95 %."""
+        return self.surprise < _INSIDE_95
 
 
 def believed(piece: Piece) -> Samples:
@@ -102,6 +107,7 @@ def _ball_samples(piece: Piece, interface: str = "world_model") -> Samples:
         "ball in the air, height": of("height_error_m2", case=in_the_air),
         "ball resting, position": of("error_m2", case=resting),
         "ball resting, velocity": of("velocity_error_m2_s2", case=resting),
+        "ball, squared error by its covariance": of("surprise", case=[math.isfinite(each.surprise) for each in seen]),
         "inside 95 %, all": of("inside", case=every),
         "inside 95 %, rolling freely": of("inside", case=rolling),
         "inside 95 %, resting": of("inside", case=resting),
@@ -148,7 +154,7 @@ def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: grou
     return _Ball(
         float(error @ error),
         (ball.vx_m_s - truth.ball_vx_m_s) ** 2 + (ball.vy_m_s - truth.ball_vy_m_s) ** 2,
-        covers(covariance, error),
+        surprise_of(covariance, error),
         math.dist((own.x_m, own.y_m), (truth.ball_x_m, truth.ball_y_m)) <= NEAR_M,
         math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s),
         "itself" if robot in touching else "another" if touching else "",
@@ -160,7 +166,12 @@ def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: grou
 
 def covers(covariance: Floats, error: Floats) -> bool:
     """Returns whether an error (2) lies within the ellipse of its covariance (2, 2) that holds 95 % of all errors."""
-    return bool(covariance.any() and error @ np.linalg.solve(covariance, error) < _INSIDE_95)
+    return surprise_of(covariance, error) < _INSIDE_95
+
+
+def surprise_of(covariance: Floats, error: Floats) -> float:
+    """Returns the square of an error (2) by its covariance (2, 2); infinite without a covariance."""
+    return float(error @ np.linalg.solve(covariance, error)) if covariance.any() else math.inf
 
 
 def _kicks(piece: Piece) -> Samples:

@@ -12,9 +12,11 @@ from procs.evaluation.beliefs import Samples, believed
 from procs.evaluation.claims import claims
 from procs.evaluation.conduct import conducted
 from procs.evaluation.delays import delays
+from procs.evaluation.innovations import innovations
 from procs.evaluation.piece import Piece, piece_of
 from procs.evaluation.plots import plot
 from procs.evaluation.possession import possession
+from procs.evaluation.sightings import sightings
 from procs.evaluation.table import MEASURES, Measure, as_csv, as_json, as_text, rate, ratio, root_ratio, rows_of
 from procs.evaluation.team_ball import team_ball
 from procs.model.frames import Floats
@@ -40,7 +42,8 @@ def measured(
 
 def samples_of(piece: Piece) -> Samples:
     """Returns the samples of every measure of a piece."""
-    return believed(piece) | claims(piece) | team_ball(piece) | delays(piece) | conducted(piece) | possession(piece)
+    beliefs = believed(piece) | sightings(piece) | innovations(piece) | claims(piece) | team_ball(piece)
+    return beliefs | delays(piece) | conducted(piece) | possession(piece)
 
 
 def report(results: Sequence[Mapping[str, list[float] | list[list[float]]]], folder: Path) -> str:

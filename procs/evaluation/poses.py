@@ -18,6 +18,7 @@ FOUND_S = 10.0
 _WRONG_M, _WRONG_RAD = 1.0, 0.5
 _RIGHT_M, _RIGHT_RAD = 0.3, 0.3
 _CARRIED_M_S = 20.0  # a robot that moves faster was carried
+_STANDS_M_S, _STANDS_RAD_S = 0.05, 0.1  # a robot that moves no faster stands
 _JUMP_M = 0.5  # a believed pose that departs so far from the true motion within a tick has jumped
 
 
@@ -32,6 +33,8 @@ class _Belief(NamedTuple):
     """Change of the error in position, as a vector, since the tick before."""
     carried: bool
     """The robot was set down elsewhere in this tick."""
+    stands: bool
+    """It neither drives nor turns."""
 
     @property
     def wrong(self) -> bool:
@@ -50,8 +53,8 @@ def pose_samples(piece: Piece, interface: str = "pose", prefix: str = "") -> dic
     A robot that was carried away cannot know that at once: until it knows that it is lost, or knows its place, its
     errors do not count.
     """
-    errors_m2: list[float] = []
-    turns_rad2: list[float] = []
+    errors: list[tuple[float, float]] = []  # squared, of position and heading
+    standing: list[tuple[float, float]] = []
     known: list[bool] = []
     found_s: list[float] = []
     wrongs = jumps = 0
@@ -66,14 +69,18 @@ def pose_samples(piece: Piece, interface: str = "pose", prefix: str = "") -> dic
                 wrongs += belief.wrong and not was_wrong
                 jumps += belief.jump_m > _JUMP_M and belief.localized and was_localized and not belief.carried
                 if belief.localized:
-                    errors_m2.append(belief.error_m**2)
-                    turns_rad2.append(belief.error_rad**2)
+                    errors.append((belief.error_m**2, belief.error_rad**2))
+                    if belief.stands:
+                        standing.append(errors[-1])
             was_wrong, was_localized = belief.wrong, belief.localized
+    all_errors, standing_errors = (np.array(each, np.float64).reshape(-1, 2) for each in (errors, standing))
     samples = {
         "pose known": np.array(known, np.float64),
-        "pose, position": np.array(errors_m2),
-        "pose, position, 99 %": np.array(errors_m2),
-        "pose, heading": np.array(turns_rad2),
+        "pose, position": all_errors[:, 0],
+        "pose, position, 99 %": all_errors[:, 0],
+        "pose, heading": all_errors[:, 1],
+        "pose, robot stands, position": standing_errors[:, 0],
+        "pose, robot stands, heading": standing_errors[:, 1],
         "wrong pose believed": np.array([(wrongs, sum(known) * piece.period_s / 60 / 1000)]),
         "pose jumps": np.array([(jumps, sum(known) * piece.period_s / 60)]),
         "kidnapped, found within 10 s": np.array([time_s <= FOUND_S for time_s in found_s], np.float64),
@@ -102,6 +109,7 @@ def _beliefs(piece: Piece, interface: str, robot: str) -> Iterator[_Belief]:
                 abs(wrap_rad(pose.heading_rad - own.heading_rad)),
                 jump_m,
                 carried,
+                math.hypot(own.vx_m_s, own.vy_m_s) <= _STANDS_M_S and abs(own.omega_rad_s) <= _STANDS_RAD_S,
             )
 
 

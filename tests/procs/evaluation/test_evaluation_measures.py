@@ -288,7 +288,7 @@ def _playing() -> game_state_t:
 def test_launch_file_gives_every_measure_its_samples() -> None:
     system = system_of("soccer-1v1.yaml", seed=2)
     system.tick(110)
-    made = piece_of(system.sent, 0.05)
+    made = piece_of(system.sent, 0.04)
     found = samples_of(made)
     assert set(found) == {measure.name for measure in MEASURES}
     assert found["ball known"].any()
@@ -320,6 +320,16 @@ def test_carried_robot_is_found_once_its_pose_is_right() -> None:
     assert found["wrong pose believed"][0, 0] == 0, "it could not know at once"
     assert np.sqrt(found["pose, position"].max()) == pytest.approx(0.1)
     assert found["pose known"].sum() == 10 + 190
+
+
+def test_standing_robot_has_rows_of_its_own() -> None:
+    made = Piece(0.05)
+    for tick in range(FIRST, FIRST + 20):
+        made.truth[tick] = ground_truth_t(robots=[robot("cyan1", 0.0, 0.0, vx_m_s=0.0 if tick < FIRST + 5 else 1.0)])
+    made.by_robot["pose"] = {"cyan1": dict.fromkeys(made.truth, believes(0.02))}
+    found = pose_samples(made)
+    assert found["pose, robot stands, position"].tolist() == pytest.approx([0.0004] * 5)
+    assert len(found["pose, position"]) == 20
 
 
 def test_wrong_place_found_after_a_search_counts_as_believed() -> None:

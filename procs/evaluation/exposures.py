@@ -1,0 +1,96 @@
+"""Moments at which cameras expose, between two ticks: what was true then, and what a robot believed."""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+
+from lcmtypes.soccer import ball_percept_t, ground_truth_t, pose_t
+from procs.evaluation.piece import Piece
+from procs.evaluation.poses import START_S
+from procs.model.frames import Floats, rotation
+from procs.model.geometry import wrap_rad
+from procs.model.units import US_PER_S
+
+T = TypeVar("T")
+
+
+class Frame(NamedTuple):
+    """Percept of the ball from one frame."""
+
+    robot: str
+    tick: int
+    """In which the percept was written."""
+    exposed: float
+    """Time of the exposure, in ticks."""
+    percept: ball_percept_t
+
+
+class Scene(NamedTuple):
+    """Truth around a robot at an exposure, in its frame."""
+
+    ball_m: Floats
+    """(2)."""
+    others_m: Floats
+    """(k, 2): the other robots."""
+
+
+def frames_of(piece: Piece) -> Iterator[Frame]:
+    """Yields the frames of all robots; robot by robot, tick by tick."""
+    for robot, percepts in sorted(piece.by_robot.get("ball_percept", {}).items()):
+        for tick, percept in sorted(percepts.items()):
+            if tick * piece.period_s >= START_S:
+                age_us = percept.header.time_us - percept.capture_us if percept.capture_us else 0
+                yield Frame(robot, tick, tick - age_us / US_PER_S / piece.period_s, percept)
+
+
+def scene_at(piece: Piece, robot: str, exposed: float) -> Scene | None:
+    """Returns the scene around a robot at a time in ticks; None if the ticks before and after are not of the piece."""
+    before, after, share = _around(piece.truth, exposed)
+    if before is None or after is None:
+        return None
+    earlier, later = _poses(before), _poses(after)
+    poses = {name: between(pose, later[name], share) for name, pose in earlier.items() if name in later}
+    own = poses.pop(robot, None)
+    if own is None:
+        return None
+    ball_m = between(_ball(before), _ball(after), share)
+    places_m = np.array([ball_m, *(pose[:2] for pose in poses.values())])
+    seen_m = (places_m - own[:2]) @ rotation(float(own[2]))
+    return Scene(seen_m[0], seen_m[1:])
+
+
+def pose_at(poses: Mapping[int, pose_t], exposed: float) -> Floats | None:
+    """Returns the pose (3) that a robot believed at a time in ticks; None if it did not know its place."""
+    before, after, share = _around(poses, exposed)
+    if before is None or after is None or not (before.localized and after.localized):
+        return None
+    return between(_values(before), _values(after), share)
+
+
+def between(before: Floats, after: Floats, share: float) -> Floats:
+    """Returns the place (2) or pose (3) on the way from one to another; headings turn the shorter way."""
+    way = after - before
+    if len(way) > 2:
+        way[2] = wrap_rad(float(way[2]))
+    return np.asarray(before + share * way)
+
+
+def _around(values: Mapping[int, T], exposed: float) -> tuple[T | None, T | None, float]:
+    """Returns the values before and after a time in ticks, and the share of the way from one to the next."""
+    first = math.floor(exposed + 1e-6)
+    share = max(0.0, exposed - first)
+    return values.get(first), values.get(first + 1 if share > 1e-6 else first), share
+
+
+def _poses(truth: ground_truth_t) -> dict[str, Floats]:
+    return {robot.name: np.array((robot.x_m, robot.y_m, robot.heading_rad)) for robot in truth.robots}
+
+
+def _ball(truth: ground_truth_t) -> Floats:
+    return np.array((truth.ball_x_m, truth.ball_y_m))
+
+
+def _values(pose: pose_t) -> Floats:
+    return np.array((pose.x_m, pose.y_m, pose.heading_rad))
