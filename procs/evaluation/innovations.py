@@ -53,6 +53,8 @@ def _innovations(piece: Piece) -> Iterator[tuple[Frame, Floats]]:
             np.array([percept.covariance_m2]),
         )
         spread_m2 = by_sight_m2[0] + by_pose_m2[0] + np.array(model.ball.covariance)[:2, :2]
+        if np.linalg.det(spread_m2) <= 0.0:
+            continue  # nothing is claimed
         innovation = np.linalg.solve(np.linalg.cholesky(spread_m2), seen_m[0] - expected_m)
         if innovation @ innovation <= _GATE:
             yield frame, innovation
