@@ -18,8 +18,8 @@ from procs.behaviour.view import View, view_of
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import wrap_rad
-from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
-from procs.referee.ends import Team
+from procs.model.robot import ABSENT, PLAYERS, ROBOT, Players, RobotModel
+from procs.model.teams import Team
 
 _EXPIRES_S = 1.0
 """Logical time within which the skiller has to begin a command."""
@@ -77,7 +77,7 @@ class Agent(Component):
         if frame != self._frame:
             self._frame, self._tactics = frame, Tactics(self.config.field)
         game = game_of(self.game_state.value, self._team, frame)
-        if role.role == roles.ABSENT and self._robot not in game.sent_off:
+        if role.role == ABSENT and self._robot not in game.sent_off:
             role.role = roles.DEFENDER
         model, said, players = self.world_model.value, self._tactics.passing.said, self.config.players
         view = view_of(
@@ -93,7 +93,7 @@ class Agent(Component):
         """Returns the role of the robot and its order."""
         held, field = self.kicker_state.value.ball_held, self.config.field
         if self._robot in game.sent_off and view.localized:
-            return roles.ABSENT, leave_field(view, field)
+            return ABSENT, leave_field(view, field)
         if self.config.strategy == "greedy":
             return greedy.decide(view, game, held, field)
         idle = roles.Job(self.role.value.role or roles.DEFENDER, view.own.place)

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from procs.behaviour import aim
 from procs.behaviour.order import Order
 from procs.behaviour.passing import Passing
-from procs.behaviour.roles import ABSENT, GOALKEEPER
+from procs.behaviour.roles import GOALKEEPER
 from procs.behaviour.view import Robot, View
 from procs.model.field import Field, Point
 from procs.model.geometry import ahead, bearing_rad, wrap_rad
+from procs.model.robot import ABSENT
 
 _SHOT_RANGE_M = 10.5
 _HALFWAY_M = 0.3  # a goal from the own half would not count

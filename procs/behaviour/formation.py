@@ -8,8 +8,8 @@ from procs.behaviour.path import Disc, find_way
 from procs.behaviour.shortest import first_turn
 from procs.behaviour.view import Robot
 from procs.model.field import SIDES, Field, Point
+from procs.model.game_states import State
 from procs.model.geometry import ahead, bearing_rad, between, clamp
-from procs.referee.restarts import State
 
 _OWN_SET_PIECE_M, _THEIR_SET_PIECE_M, _DROPPED_BALL_M = 2.3, 3.3, 1.3
 """Distances from the ball of a set piece: those of the rules and 0.3 m more."""

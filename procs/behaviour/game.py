@@ -7,9 +7,9 @@ from typing import NamedTuple
 from lcmtypes.soccer import game_state_t
 from procs.behaviour.view import Frame
 from procs.model.field import Point
+from procs.model.game_states import State
 from procs.model.geometry import plausible
-from procs.referee.ends import Ends, Team
-from procs.referee.restarts import State
+from procs.model.teams import Ends, Team
 
 
 class Whose(Enum):

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from lcmtypes.soccer import mate_estimate_t
 from procs.model.robot import Player, number_of
-from procs.referee.ends import Team, team_number
+from procs.model.teams import Team, team_number
 
 
 def team_of_player(robot: str, players: Mapping[str, Player]) -> Team:

@@ -7,9 +7,8 @@ from procs.behaviour.bodies import Bodies
 from procs.behaviour.goals import Goals
 from procs.behaviour.identity import number_of_mate, number_of_player
 from procs.behaviour.obstacles import reachable
-from procs.behaviour.roles import ABSENT
 from procs.model.field import Field, Point
-from procs.model.robot import Player
+from procs.model.robot import ABSENT, Player
 
 
 def is_field_player(model: world_model_t, robot: str, players: Mapping[str, Player]) -> bool:

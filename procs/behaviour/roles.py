@@ -10,12 +10,11 @@ from procs.behaviour.formation import places
 from procs.behaviour.passing import taken
 from procs.behaviour.view import Ball, Robot, View
 from procs.model.field import Field, Point
+from procs.model.robot import ABSENT
 
 GOALKEEPER, ATTACKER, SUPPORTER, DEFENDER = "goalkeeper", "attacker", "supporter", "defender"
 PASSER = "passer"
 """Took a set piece and may not touch the ball before another robot has."""
-ABSENT = "absent"
-"""Is off the field, or on its way there."""
 
 _HAS_BALL_M = 0.45
 _ROLLS_M_S = 0.6  # the nearest robot takes a slower ball, whatever was agreed

@@ -14,8 +14,8 @@ from procs.behaviour.bodies import Bodies
 from procs.behaviour.game import Game
 from procs.behaviour.view import Robot
 from procs.model.field import Field, Point
+from procs.model.game_states import State
 from procs.model.geometry import clamp
-from procs.referee.restarts import State
 
 _WIDTH_M = 14.0  # of the field for which distances across it are; they become larger or smaller with the field
 _INSIDE_M = 0.8  # receivers wait so far inside the touch lines

@@ -25,7 +25,7 @@ from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import plausible
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
-from procs.referee.ends import Team
+from procs.model.teams import Team
 
 _KICK_TIMEOUT_S = 0.15
 """A kick without an answer by then has failed."""

@@ -12,8 +12,8 @@ from procs.behaviour.skills.getting import comes_fast
 from procs.behaviour.skills.keeping import BEFORE_LINE_M
 from procs.behaviour.view import Robot, View
 from procs.model.field import Field, Point
+from procs.model.game_states import State
 from procs.model.geometry import bearing_rad, clamp
-from procs.referee.restarts import State
 
 _AREA_M = 1.2  # a marking robot would stand in the penalty area with an opponent so near to it
 _MARK_M = 3.0  # a defender leaves its place for an opponent this near

@@ -10,10 +10,11 @@ from lcmtypes.soccer import match_event_t
 from procs.evaluation.beliefs import Samples
 from procs.evaluation.piece import Piece
 from procs.model.field import Point
+from procs.model.game_states import State
 from procs.model.robot import number_in
-from procs.referee.ends import Ends, Team
+from procs.model.teams import Ends, Team
 from procs.referee.positions import in_wrong_half, too_near
-from procs.referee.restarts import Restart, State
+from procs.referee.restarts import Restart
 
 _HEAVY_M_S, _LIGHT_M_S = 3.0, 1.0
 _CONTROL_S = 0.3

@@ -5,7 +5,7 @@ import numpy as np
 from lcmtypes.soccer import match_event_t
 from procs.evaluation.beliefs import Samples
 from procs.evaluation.piece import Piece
-from procs.referee.restarts import State
+from procs.model.game_states import State
 
 _SHOOTING = ("shoot", "lob")  # skills
 _SHOT_M_S = 6.0

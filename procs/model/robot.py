@@ -81,6 +81,9 @@ PLAYERS: Mapping[str, Player] = {
 }
 """Five against five, by their usual names."""
 
+ABSENT = "absent"
+"""Role of a robot that is off the field, or on its way there."""
+
 
 @cache
 def team_of(robot: str) -> str:

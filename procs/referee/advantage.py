@@ -1,6 +1,6 @@
 """Advantage: a foul without contact does not stop the game while its victims have the ball (2016, law 5)."""
 
-from procs.referee.ends import Team, team_number
+from procs.model.teams import Team, team_number
 from procs.referee.fouls.foul import Foul, Scene
 
 

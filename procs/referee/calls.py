@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
+from procs.model.game_states import State
+from procs.model.teams import Team
 from procs.referee.cards import Card
-from procs.referee.ends import Team
 from procs.referee.reasons import Reason
-from procs.referee.restarts import State
 
 
 class Call(NamedTuple):

@@ -4,9 +4,10 @@ import math
 from typing import NamedTuple
 
 from procs.model.field import Field, Point
-from procs.referee.ends import Ends, Team, team_number
+from procs.model.game_states import State
+from procs.model.teams import Ends, Team, team_number
 from procs.referee.reasons import Reason
-from procs.referee.restarts import Restart, State, corner_kick, goal_kick, kick_off
+from procs.referee.restarts import Restart, corner_kick, goal_kick, kick_off
 from procs.referee.sight import Sight
 from procs.referee.touches import Touches
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from procs.referee.ends import Ends, Team
+from procs.model.teams import Ends, Team
 from procs.referee.rules import Rules
 
 FIRST, SECOND, THIRD, FOURTH, PENALTIES = 1, 2, 3, 4, 5

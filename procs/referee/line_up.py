@@ -1,8 +1,8 @@
 """Conditions for the start of a set piece: robots stand where the rules allow it, and no team waits for a robot."""
 
 from procs.model.field import Field
+from procs.model.teams import Ends, Team, team_number
 from procs.referee.cards import Cards
-from procs.referee.ends import Ends, Team, team_number
 from procs.referee.positions import misplaced
 from procs.referee.restarts import Restart
 from procs.referee.sight import Sight

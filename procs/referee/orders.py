@@ -3,14 +3,15 @@
 from collections.abc import Callable
 
 from procs.model.field import Point
+from procs.model.game_states import State
 from procs.model.robot import PLAYERS
+from procs.model.teams import Team, team_number
 from procs.referee import halves, restarts
 from procs.referee.cards import Card
-from procs.referee.ends import Team, team_number
 from procs.referee.names import Names
 from procs.referee.reasons import REPAIRS, Reason
 from procs.referee.refusals import SET_PIECES, begun_by, why_not
-from procs.referee.restarts import Restart, State
+from procs.referee.restarts import Restart
 from procs.referee.sight import Sight
 from procs.referee.whistle import Whistle
 

@@ -4,8 +4,9 @@ import math
 from collections.abc import Mapping
 
 from procs.model.field import Field, Point
-from procs.referee.ends import Ends, Team, team_number
-from procs.referee.restarts import Restart, State
+from procs.model.game_states import State
+from procs.model.teams import Ends, Team, team_number
+from procs.referee.restarts import Restart
 
 OWN_M = 2.0
 """Least distance of the team that takes the set piece, except for the taker."""

@@ -11,17 +11,17 @@ from lcmtypes.soccer import (
     match_history_t,
     referee_command_t,
 )
+from procs.model.events import Event, Kind
 from procs.model.field import Point
+from procs.model.game_states import State
+from procs.model.teams import Team
 from procs.referee.calls import Call
-from procs.referee.ends import Team
 from procs.referee.names import Names
 from procs.referee.orders import carry_out
 from procs.referee.reasons import OFF_FIELD
-from procs.referee.restarts import State
 from procs.referee.rules import Rules
 from procs.referee.sight import LEAVES, Sight
 from procs.referee.whistle import Whistle
-from procs.simulation.physics.events import Event, Kind
 
 _KINDS = frozenset(Kind)
 _REPEATED_TICKS = 100  # from one message with the history to the next, for readers outside that come late

@@ -3,9 +3,9 @@
 Cards, repairs and the score can be put right at any time, and a half can begin at any time.
 """
 
+from procs.model.game_states import State
+from procs.model.teams import Team
 from procs.referee import halves
-from procs.referee.ends import Team
-from procs.referee.restarts import State
 from procs.referee.whistle import Whistle
 
 SET_PIECES = {

@@ -1,35 +1,12 @@
 """Restarts after an interruption: the set piece, its team, and the place of the ball."""
 
 import math
-from enum import IntEnum
 from typing import NamedTuple
 
 from procs.model.field import Field, Point
+from procs.model.game_states import State
 from procs.model.geometry import clamp
-from procs.referee.ends import Ends, Team
-
-
-class State(IntEnum):
-    """States of the game; the numbers are those of the message."""
-
-    FROZEN = 0
-    PLAY = 1
-    KICK_OFF = 2
-    DROP_BALL = 3
-    PENALTY = 4
-    CORNER_KICK = 5
-    THROW_IN = 6
-    FREE_KICK = 7
-    GOAL_KICK = 8
-    HALF_TIME = 9
-
-    @property
-    def words(self) -> str:
-        """Name of the state for people, such as `kick-off` or `corner kick`."""
-        return _WORDS.get(self, self.name.lower().replace("_", " "))
-
-
-_WORDS = {State.KICK_OFF: "kick-off", State.DROP_BALL: "dropped ball", State.THROW_IN: "throw-in"}
+from procs.model.teams import Ends, Team
 
 
 class Restart(NamedTuple):

@@ -1,11 +1,11 @@
 """Penalties after a drawn overtime: the teams shoot in turn until one of them cannot be caught any more (2016)."""
 
-from procs.referee.ends import Team, team_number
+from procs.model.events import Kind
+from procs.model.teams import Team, team_number
 from procs.referee.fouls.foul import Scene
 from procs.referee.restarts import Restart
 from procs.referee.sight import LEAVES
 from procs.referee.stretch import Stretch
-from procs.simulation.physics.events import Kind
 
 
 class Shootout:

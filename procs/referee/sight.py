@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
+from procs.model.events import Event, Kind
 from procs.model.field import Point
 from procs.model.robot import number_of
-from procs.referee.ends import Team, team_number
-from procs.simulation.physics.events import Event, Kind
+from procs.model.teams import Team, team_number
 
 LEAVES = frozenset({Kind.GOAL, Kind.OUT_SIDE, Kind.OUT_END})
 """Events of a ball that has left the field, whether a robot touched it last or none."""

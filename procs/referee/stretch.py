@@ -3,11 +3,11 @@
 import math
 
 from procs.model.field import Point
+from procs.model.game_states import State
+from procs.model.teams import Ends
 from procs.referee.advantage import Advantage
-from procs.referee.ends import Ends
 from procs.referee.fouls.book import RuleBook
 from procs.referee.fouls.foul import Foul, Scene
-from procs.referee.restarts import State
 from procs.referee.rules import Rules
 from procs.referee.sight import Sight
 from procs.referee.touches import Carrier, Touches

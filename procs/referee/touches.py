@@ -3,7 +3,7 @@
 import math
 
 from procs.model.field import Point
-from procs.referee.ends import Ends, Team, team_number
+from procs.model.teams import Ends, Team, team_number
 from procs.referee.sight import Sight
 
 _LOST_S = 0.25  # a robot that does not touch the ball for longer does not carry it any more

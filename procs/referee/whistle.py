@@ -6,24 +6,25 @@ a ball out of the field, a foul or a deadlock interrupts it.
 
 from collections.abc import Iterable
 
+from procs.model.events import Event, Kind
 from procs.model.field import Point
+from procs.model.game_states import State
+from procs.model.teams import Ends, Team, team_number
 from procs.referee import goals, halves, restarts
 from procs.referee.ball_placing import BallPlacing
 from procs.referee.calls import Call
 from procs.referee.cards import Card, Cards
-from procs.referee.ends import Ends, Team, team_number
 from procs.referee.fouls.dribbling import dribbling
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.fouls.pushing import collision
 from procs.referee.fouls.set_piece import breach
 from procs.referee.line_up import misplaced_robots, too_few_robots
 from procs.referee.reasons import Reason
-from procs.referee.restarts import Restart, State
+from procs.referee.restarts import Restart
 from procs.referee.rules import Rules
 from procs.referee.shootout import Shootout, penalty_scored
 from procs.referee.sight import Sight
 from procs.referee.stretch import Stretch
-from procs.simulation.physics.events import Event, Kind
 
 _REPEATS = 2  # of a set piece; then the game goes on in spite of a breach
 

@@ -15,8 +15,7 @@ from lcmtypes.soccer import (
     true_robot_t,
     world_model_t,
 )
-from procs.behaviour.roles import ABSENT
-from procs.model.robot import team_in
+from procs.model.robot import ABSENT, team_in
 
 _ROUNDING_M2 = 1e-8
 """A covariance without noise is that of rounding."""

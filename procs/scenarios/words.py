@@ -7,10 +7,10 @@ from typing import Any
 
 from fwk.testing import reads_messages
 from lcmtypes.soccer import game_state_t
+from procs.model.events import Kind
 from procs.model.field import Point
 from procs.referee.reasons import Reason
 from procs.scenarios.mistakes import right_name
-from procs.simulation.physics.events import Kind
 
 Newest = Callable[[str], Any]
 

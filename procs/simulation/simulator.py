@@ -20,6 +20,7 @@ from lcmtypes.soccer import (
     reset_world_t,
 )
 from procs.model.ball import BALL, BallModel
+from procs.model.events import Event
 from procs.model.field import Field, Point
 from procs.model.kinematics import Wheels
 from procs.model.realism import Realism
@@ -27,7 +28,6 @@ from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel, player_of
 from procs.model.units import US_PER_S
 from procs.model.wheel_messages import WheelReader
 from procs.simulation.field_crew import FieldCrew
-from procs.simulation.physics.events import Event
 from procs.simulation.physics.kick_mechanism import KickerCommand
 from procs.simulation.physics.realism import Changes, noise_of
 from procs.simulation.physics.reports import event_message, field_message, robot_message

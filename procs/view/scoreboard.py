@@ -6,8 +6,8 @@ from typing import Any
 
 from lcmtypes.soccer import game_event_t, game_state_t, match_history_t
 from procs.model.field import field_of
+from procs.model.game_states import State
 from procs.referee.reasons import OFF_FIELD
-from procs.referee.restarts import State
 from procs.view.field_drawing import field_drawing
 
 Newest = Callable[[str], Any]

@@ -22,12 +22,11 @@ from lcmtypes.soccer import (
     team_message_t,
     world_model_t,
 )
-from procs.behaviour.roles import ABSENT
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
 from procs.model.frames import Floats
 from procs.model.geometry import plausible
-from procs.model.robot import PLAYERS, ROBOT, TEAM_NUMBERS, Players, RobotModel, player_of
+from procs.model.robot import ABSENT, PLAYERS, ROBOT, TEAM_NUMBERS, Players, RobotModel, player_of
 from procs.model.units import US_PER_S
 from procs.world_model.ball_track import Sighting, Walls
 from procs.world_model.ball_tracker import BallTracker

@@ -4,7 +4,7 @@ In the opponents' areas a goalkeeper is a field player. A robot that is alone ke
 """
 
 from procs.model.field import SIDES
-from procs.referee.ends import team_number
+from procs.model.teams import team_number
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.reasons import Reason
 

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from procs.model.field import Point
-from procs.referee.ends import Ends
+from procs.model.teams import Ends
 from procs.referee.reasons import Reason
 from procs.referee.rules import Rules
 from procs.referee.sight import Sight

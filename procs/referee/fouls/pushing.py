@@ -3,11 +3,11 @@
 import itertools
 import math
 
+from procs.model.events import Kind
 from procs.model.field import Point
-from procs.referee.ends import team_number
+from procs.model.teams import team_number
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.reasons import Reason
-from procs.simulation.physics.events import Kind
 
 _TOUCHING_M = 0.02  # robots whose gap is smaller touch each other
 _SHOVES_M_S = 0.1  # two robots that move faster in the pusher's direction are a push

@@ -1,10 +1,11 @@
 """Set pieces: only the team that takes it plays the ball, and robots keep their distance until it has moved (2016)."""
 
-from procs.referee.ends import Team, team_number
+from procs.model.game_states import State
+from procs.model.teams import Team, team_number
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.positions import too_near
 from procs.referee.reasons import Reason
-from procs.referee.restarts import Restart, State
+from procs.referee.restarts import Restart
 
 _INTRUSION_M = 0.3
 """A robot that has kept its distance may come nearer by so much before the set piece is repeated."""

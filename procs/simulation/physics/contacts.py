@@ -4,8 +4,8 @@ from typing import Any
 
 import pymunk
 
+from procs.model.events import Event, Kind
 from procs.simulation.physics.arena import BALL, HULL, ROBOT
-from procs.simulation.physics.events import Event, Kind
 from procs.simulation.physics.robot_body import Robot
 
 

@@ -4,9 +4,9 @@ import math
 from collections.abc import Mapping
 
 from lcmtypes.soccer import field_t, game_state_t, match_event_t, true_robot_t
+from procs.model.events import Event, Kind
 from procs.model.field import Field
 from procs.model.robot import CYAN, MAGENTA, Player
-from procs.simulation.physics.events import Event, Kind
 from procs.simulation.physics.robot_body import Robot
 
 _TEAMS = {CYAN: game_state_t.TEAM_CYAN, MAGENTA: game_state_t.TEAM_MAGENTA}

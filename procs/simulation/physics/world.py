@@ -7,6 +7,7 @@ import numpy as np
 import pymunk
 
 from procs.model.ball import BALL, BallModel
+from procs.model.events import Event, Kind
 from procs.model.field import Field, Point
 from procs.model.robot import PLAYERS, ROBOT, Player, RobotModel
 from procs.simulation.physics.arena import build_arena
@@ -16,8 +17,8 @@ from procs.simulation.physics.bodies import Bodies, State
 from procs.simulation.physics.contacts import Contacts
 from procs.simulation.physics.crossbar import Crossbar
 from procs.simulation.physics.drive import Drive, longest_step_s
-from procs.simulation.physics.events import Event, Kind, LineJudge
 from procs.simulation.physics.kick_mechanism import Kicker, Push
+from procs.simulation.physics.line_judge import LineJudge
 from procs.simulation.physics.mouth import Mouth
 from procs.simulation.physics.realism import Noise
 from procs.simulation.physics.robot_body import Robot

@@ -17,8 +17,8 @@ from procs.behaviour.skills.skill import Obstacle, Scene, Sight
 from procs.behaviour.view import Ball
 from procs.model.ball import BALL
 from procs.model.field import Point
+from procs.model.game_states import State
 from procs.model.robot import ROBOT
-from procs.referee.restarts import State
 from tests.procs.behaviour.behaviour_parts import FIELD, ball, robot, view
 
 LARGE_ROBOT = Bodies.of(ROBOT.model_copy(update={"radius_m": 0.35}), BALL)

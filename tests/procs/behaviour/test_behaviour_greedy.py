@@ -8,7 +8,7 @@ from fwk.testing import settings_in
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.greedy import decide
 from procs.model.field import Field, Point
-from procs.referee.restarts import State
+from procs.model.game_states import State
 from tests.procs.behaviour.behaviour_parts import ball, robot, view
 
 FIELD = Field()

@@ -21,8 +21,8 @@ from procs.behaviour.obstacles import movers
 from procs.behaviour.skiller import Skiller
 from procs.behaviour.view import Frame, View, view_of
 from procs.model.field import Field
+from procs.model.game_states import State
 from procs.model.robot import Player
-from procs.referee.restarts import State
 from procs.scenarios.scenario import Scenario, system_of
 
 PLAYERS = {

@@ -10,7 +10,7 @@ from procs.behaviour.roles import ATTACKER, SUPPORTER, receiver
 from procs.behaviour.tactics import Tactics
 from procs.behaviour.view import Agreement, Ball, Robot, View
 from procs.model.field import Point
-from procs.referee.restarts import State
+from procs.model.game_states import State
 from tests.procs.behaviour.behaviour_parts import FIELD, agreed, ball, job, robot, view
 
 TICK_S = 0.05

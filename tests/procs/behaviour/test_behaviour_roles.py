@@ -11,7 +11,7 @@ from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER, ass
 from procs.behaviour.tactics import leave_field
 from procs.behaviour.view import View
 from procs.model.field import SIDES, Field, Point
-from procs.referee.restarts import State
+from procs.model.game_states import State
 from tests.procs.behaviour.behaviour_parts import FIELD, agreed, ball, robot, view
 
 TEAM = (

@@ -14,7 +14,7 @@ from procs.behaviour.skills.searching import Search, vantage_points, way_is_free
 from procs.behaviour.skills.skill import Blind, Obstacle, Scene, Sight, Status
 from procs.behaviour.view import Ball, View
 from procs.model.field import Point
-from procs.referee.restarts import State
+from procs.model.game_states import State
 from tests.procs.behaviour.behaviour_parts import FIELD, ball, robot, view
 
 UNKNOWN = Ball(known=False)

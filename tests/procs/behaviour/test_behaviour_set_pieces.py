@@ -12,10 +12,11 @@ from procs.behaviour.set_pieces import BOOK
 from procs.behaviour.tactics import Tactics
 from procs.behaviour.view import Agreement
 from procs.model.field import Point
+from procs.model.game_states import State
 from procs.model.geometry import between
-from procs.referee.ends import Team
+from procs.model.teams import Team
 from procs.referee.positions import misplaced
-from procs.referee.restarts import Restart, State
+from procs.referee.restarts import Restart
 from tests.procs.behaviour.behaviour_parts import FIELD, ball, job, robot, view
 
 SPOTS = {

@@ -13,7 +13,7 @@ from procs.behaviour.navigator import Navigator
 from procs.behaviour.path import Disc
 from procs.behaviour.shortest import first_turn
 from procs.model.field import Point
-from procs.referee.restarts import State
+from procs.model.game_states import State
 from tests.procs.behaviour.behaviour_parts import FIELD, robot
 
 START, TARGET = Point(-3.0, 0.0), Point(3.0, 0.0)

@@ -11,7 +11,7 @@ from procs.behaviour.skills.playing import Clear, Shoot
 from procs.behaviour.skills.skill import Drive, Scene, Status, Step
 from procs.behaviour.view import Agreement, Ball, View
 from procs.model.field import Point
-from procs.referee.restarts import State
+from procs.model.game_states import State
 from tests.procs.behaviour.behaviour_parts import ball, robot, view
 
 OWN = robot("cyan2", 0.0, 0.0)

@@ -11,8 +11,8 @@ from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER
 from procs.behaviour.tactics import Tactics
 from procs.behaviour.view import Ball, Robot, View
 from procs.model.field import Point
+from procs.model.game_states import State
 from procs.model.geometry import bearing_rad, wrap_rad
-from procs.referee.restarts import State
 from tests.procs.behaviour.behaviour_parts import FIELD, agreed, ball, job, robot, view
 
 PLAY = Game(State.PLAY, stopped=False)

@@ -5,13 +5,13 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from procs.model.ball import BALL
+from procs.model.events import Event, Kind
 from procs.model.field import Point
+from procs.model.game_states import State
 from procs.model.geometry import ahead, bearing_rad, between
 from procs.model.robot import ROBOT
+from procs.model.teams import Team
 from procs.referee import restarts
-from procs.referee.ends import Team
-from procs.referee.restarts import State
-from procs.simulation.physics.events import Event, Kind
 from tests.procs.referee.script import PLACES, TICK_S, Script
 
 

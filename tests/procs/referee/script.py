@@ -2,13 +2,13 @@
 
 from typing import Any
 
+from procs.model.events import Event, Kind
 from procs.model.field import Point
-from procs.referee.ends import Team
-from procs.referee.restarts import State
+from procs.model.game_states import State
+from procs.model.teams import Team
 from procs.referee.rules import Rules
 from procs.referee.sight import Sight
 from procs.referee.whistle import Whistle
-from procs.simulation.physics.events import Event, Kind
 
 TICK_S = 0.05
 CYAN, MAGENTA = Team.CYAN, Team.MAGENTA

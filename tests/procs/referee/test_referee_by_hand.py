@@ -2,11 +2,11 @@
 
 import pytest
 
+from procs.model.events import Kind
 from procs.model.field import Point
+from procs.model.game_states import State
 from procs.referee.orders import carry_out
-from procs.referee.restarts import State
 from procs.referee.sight import Sight
-from procs.simulation.physics.events import Kind
 from tests.procs.referee.script import CYAN, MAGENTA, Script
 
 

@@ -5,16 +5,16 @@ from pathlib import Path
 
 import pytest
 
+from procs.model.events import Kind
 from procs.model.field import Point
+from procs.model.game_states import State
 from procs.referee import restarts
 from procs.referee.cards import Card
 from procs.referee.orders import carry_out
 from procs.referee.reasons import Reason
-from procs.referee.restarts import State
 from procs.referee.rules import Rules
 from procs.referee.shootout import Shootout
 from procs.referee.sight import Sight
-from procs.simulation.physics.events import Kind
 from tests.procs.referee.script import CYAN, MAGENTA, Script
 
 CASES = {

@@ -2,10 +2,10 @@
 
 import pytest
 
+from procs.model.events import Event, Kind
 from procs.model.field import Point
+from procs.model.game_states import State
 from procs.referee.reasons import Reason
-from procs.referee.restarts import State
-from procs.simulation.physics.events import Event, Kind
 from tests.procs.referee.script import CYAN, MAGENTA, TICK_S, Script
 
 FREE_KICK_MAGENTA = (State.FREE_KICK, MAGENTA, True)

@@ -2,12 +2,12 @@
 
 import pytest
 
+from procs.model.events import Event, Kind
 from procs.model.field import Point
+from procs.model.game_states import State
+from procs.model.teams import Team
 from procs.referee.cards import Card
-from procs.referee.ends import Team
-from procs.referee.restarts import State
 from procs.referee.shootout import Shootout
-from procs.simulation.physics.events import Event, Kind
 from tests.procs.referee.script import CYAN, MAGENTA, Script
 
 BESIDE = {"cyan2": Point(6.9, 0.0), "cyan3": Point(3.0, 2.0), "magenta2": Point(3.0, -2.0), "magenta3": Point(2.0, 3.0)}

@@ -2,9 +2,9 @@
 
 import pytest
 
+from procs.model.events import Kind
+from procs.model.game_states import State
 from procs.referee import restarts
-from procs.referee.restarts import State
-from procs.simulation.physics.events import Kind
 from tests.procs.referee.mirror import VIEWS, Decision, Mirror, View
 from tests.procs.referee.script import TICK_S
 

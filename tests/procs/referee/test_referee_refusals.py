@@ -2,10 +2,10 @@
 
 import pytest
 
+from procs.model.events import Kind
 from procs.model.field import Point
-from procs.referee.ends import Team
-from procs.referee.restarts import State
-from procs.simulation.physics.events import Kind
+from procs.model.game_states import State
+from procs.model.teams import Team
 from tests.procs.referee.script import CYAN, MAGENTA, Script
 from tests.procs.referee.test_referee_by_hand import ask
 

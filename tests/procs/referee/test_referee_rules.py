@@ -2,14 +2,15 @@
 
 import pytest
 
+from procs.model.events import Event, Kind
 from procs.model.field import Point
-from procs.referee.ends import Team
+from procs.model.game_states import State
+from procs.model.teams import Team
 from procs.referee.positions import misplaced
-from procs.referee.restarts import Restart, State
+from procs.referee.restarts import Restart
 from procs.referee.rules import Rules
 from procs.referee.sight import Sight
 from procs.referee.whistle import Whistle
-from procs.simulation.physics.events import Event, Kind
 
 TICK_S = 0.05
 CENTRE = Point(0.0, 0.0)

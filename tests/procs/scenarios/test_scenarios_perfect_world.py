@@ -2,7 +2,7 @@
 
 from fwk.testing import Bench
 from lcmtypes.soccer import true_robot_t
-from procs.behaviour.roles import ABSENT
+from procs.model.robot import ABSENT
 from procs.scenarios.perfect_world import PerfectWorldModel
 
 

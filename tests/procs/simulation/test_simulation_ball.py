@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from procs.model.events import Event, Kind
 from procs.model.kinematics import Velocity, wheels_of
-from procs.simulation.physics.events import Event, Kind
 from procs.simulation.physics.kick_mechanism import KickerCommand
 from procs.simulation.physics.realism import PRESETS, Noise
 from procs.simulation.physics.settings import ContactSettings, KickerSettings, PhysicsSettings

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from procs.model.ball import BALL
+from procs.model.events import Event, Kind
 from procs.model.robot import ROBOT
-from procs.simulation.physics.events import Event, Kind
 from procs.simulation.physics.start_places import Pose
 from procs.simulation.physics.world import World
 

@@ -1,0 +1,26 @@
+"""States of the game."""
+
+from enum import IntEnum
+
+
+class State(IntEnum):
+    """States of the game; the numbers are those of the message."""
+
+    FROZEN = 0
+    PLAY = 1
+    KICK_OFF = 2
+    DROP_BALL = 3
+    PENALTY = 4
+    CORNER_KICK = 5
+    THROW_IN = 6
+    FREE_KICK = 7
+    GOAL_KICK = 8
+    HALF_TIME = 9
+
+    @property
+    def words(self) -> str:
+        """Name of the state for people, such as `kick-off` or `corner kick`."""
+        return _WORDS.get(self, self.name.lower().replace("_", " "))
+
+
+_WORDS = {State.KICK_OFF: "kick-off", State.DROP_BALL: "dropped ball", State.THROW_IN: "throw-in"}
