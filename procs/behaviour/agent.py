@@ -10,7 +10,6 @@ from procs.behaviour import greedy, roles
 from procs.behaviour.bodies import Bodies
 from procs.behaviour.commands import accepted_place
 from procs.behaviour.game import Game, frame_of, game_of
-from procs.behaviour.identity import team_of_player
 from procs.behaviour.order import Order
 from procs.behaviour.skills.book import SKILLS
 from procs.behaviour.tactics import Tactics, leave_field
@@ -19,7 +18,7 @@ from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import wrap_rad
 from procs.model.robot import ABSENT, PLAYERS, ROBOT, Players, RobotModel
-from procs.model.teams import Team
+from procs.model.teams import Team, team_number_of_player
 
 _EXPIRES_S = 1.0
 """Logical time within which the skiller has to begin a command."""
@@ -70,7 +69,7 @@ class Agent(Component):
 
     @property
     def _team(self) -> Team:
-        return team_of_player(self._robot, self.config.players)
+        return team_number_of_player(self._robot, self.config.players)
 
     def loop(self) -> None:
         role, frame = self.role.value, frame_of(self.game_state.value, self._team)

@@ -8,7 +8,6 @@ from lcmtypes.robot import kicker_state_t, motor_command_t, odometry_t
 from lcmtypes.soccer import drive_target_t, navigator_state_t, world_model_t
 from procs.behaviour import motion, obstacles
 from procs.behaviour.bodies import Bodies
-from procs.behaviour.identity import number_of_player
 from procs.behaviour.motion import Limits, Pose
 from procs.behaviour.path import Way, find_way
 from procs.behaviour.permitted import Permitted, is_field_player
@@ -17,7 +16,7 @@ from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import clamp, plausible, wrap_rad
 from procs.model.kinematics import STANDSTILL, Velocity
-from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
+from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel, number_of_player
 
 _FORWARD = 0.8  # cosine of the largest angle between a change of velocity towards the ball and the heading
 

@@ -5,13 +5,12 @@ from collections.abc import Iterable, Mapping
 
 from lcmtypes.soccer import robot_estimate_t, world_model_t
 from procs.behaviour.bodies import Bodies
-from procs.behaviour.identity import number_of_mate
 from procs.behaviour.path import Disc
 from procs.behaviour.velocity_obstacles import Mover
 from procs.behaviour.view import Estimate, is_sane
 from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import clamp, plausible
-from procs.model.robot import PLAYERS, Player
+from procs.model.robot import PLAYERS, Player, number_of_mate
 
 _MARGIN_M = 0.12  # room beside a robot that is driven around
 _GAP_M = 0.06  # between two robots that nearly touch

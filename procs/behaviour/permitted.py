@@ -5,10 +5,9 @@ from collections.abc import Mapping
 from lcmtypes.soccer import world_model_t
 from procs.behaviour.bodies import Bodies
 from procs.behaviour.goals import Goals
-from procs.behaviour.identity import number_of_mate, number_of_player
 from procs.behaviour.obstacles import reachable
 from procs.model.field import Field, Point
-from procs.model.robot import ABSENT, Player
+from procs.model.robot import ABSENT, Player, number_of_mate, number_of_player
 
 
 def is_field_player(model: world_model_t, robot: str, players: Mapping[str, Player]) -> bool:

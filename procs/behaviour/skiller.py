@@ -16,7 +16,6 @@ from lcmtypes.soccer import (
 from procs.behaviour.bodies import Bodies
 from procs.behaviour.commands import mistake
 from procs.behaviour.game import Whose, frame_of, game_of
-from procs.behaviour.identity import team_of_player
 from procs.behaviour.permitted import Permitted, is_field_player
 from procs.behaviour.skills.book import SKILLS, SkillRunner
 from procs.behaviour.skills.skill import Blind, Drive, Obstacle, Scene, Sight, Status, Step
@@ -25,7 +24,7 @@ from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import plausible
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
-from procs.model.teams import Team
+from procs.model.teams import Team, team_number_of_player
 
 _KICK_TIMEOUT_S = 0.15
 """A kick without an answer by then has failed."""
@@ -84,7 +83,7 @@ class Skiller(Component):
 
     @property
     def _team(self) -> Team:
-        return team_of_player(self._robot, self.config.players)
+        return team_number_of_player(self._robot, self.config.players)
 
     def loop(self) -> None:
         self._frame = frame_of(self.game_state.value, self._team)

@@ -10,10 +10,9 @@ from typing import NamedTuple
 
 from lcmtypes.soccer import ball_estimate_t, mate_estimate_t, pass_agreement_t, robot_estimate_t, world_model_t
 from procs.behaviour.bodies import USUAL, Bodies
-from procs.behaviour.identity import number_of_mate, number_of_player
 from procs.model.field import Point
 from procs.model.geometry import plausible, wrap_rad
-from procs.model.robot import PLAYERS, Player
+from procs.model.robot import PLAYERS, Player, number_of_mate, number_of_player
 
 Estimate = mate_estimate_t | robot_estimate_t
 """Another robot in the world model."""

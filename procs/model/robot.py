@@ -110,12 +110,34 @@ def player_of(robot: str, players: Mapping[str, Player]) -> Player | None:
     return Player(team=team, number=number)
 
 
-class Named(Protocol):
-    """A message about a robot."""
+def number_of_player(robot: str, players: Mapping[str, Player]) -> int:
+    """Returns the number of a robot by its namespace; without a player of that name, the number in the name."""
+    player = players.get(robot)
+    return player.number if player else number_of(robot)
+
+
+def team_of_player(robot: str, players: Mapping[str, Player]) -> str:
+    """Returns the team of a robot by its namespace; without a player of that name, the letters of the name."""
+    player = players.get(robot)
+    return player.team if player else team_of(robot)
+
+
+class Numbered(Protocol):
+    """A message about a robot of the own team."""
 
     name: str
-    team: str
     number: int
+
+
+class Named(Numbered, Protocol):
+    """A message about a robot."""
+
+    team: str
+
+
+def number_of_mate(mate: Numbered, players: Mapping[str, Player]) -> int:
+    """Returns the number that a message states about a mate, or else that of the player."""
+    return mate.number or number_of_player(mate.name, players)
 
 
 def team_in(robot: Named) -> str:

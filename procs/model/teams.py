@@ -1,9 +1,10 @@
 """Teams, and the goals that they defend."""
 
+from collections.abc import Mapping
 from enum import IntEnum
 from typing import NamedTuple
 
-from procs.model.robot import MAGENTA, team_of
+from procs.model.robot import MAGENTA, Player, team_of, team_of_player
 
 
 class Team(IntEnum):
@@ -39,3 +40,8 @@ def team_number(robot: str) -> Team:
     if not robot:
         return Team.NONE
     return Team.MAGENTA if team_of(robot) == MAGENTA else Team.CYAN
+
+
+def team_number_of_player(robot: str, players: Mapping[str, Player]) -> Team:
+    """Returns the team of a robot by its namespace; a robot that is not among the players has the team of its name."""
+    return team_number(team_of_player(robot, players))

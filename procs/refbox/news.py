@@ -1,9 +1,9 @@
 """Commands of a RefBox that lead from one state of the game to the next."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 
 from lcmtypes.soccer import game_event_t, game_state_t
-from procs.model.robot import number_of, team_of
+from procs.model.robot import PLAYERS, Player, number_of_player, team_of_player
 from procs.refbox.protocol import Command
 from procs.referee.reasons import OFF_FIELD, Reason
 
@@ -28,20 +28,19 @@ def news(
     before: game_state_t | None,
     now: game_state_t,
     events: Sequence[game_event_t] = (),
-    number: Callable[[str], int] = number_of,
-    team: Callable[[str], str] = team_of,
+    players: Mapping[str, Player] = PLAYERS,
 ) -> list[Command]:
     """Returns the commands between two states, in their order; without a state before, those that lead to this one.
 
-    `events` is the history of the match; `number` and `team` give those of the robot with a namespace. A robot that
+    `events` is the history of the match; `players` states team and number of each robot by its namespace. A robot that
     is off the field for no decision in it is under repair.
     """
     if before is None:
-        commands = _half(now) + _robots(game_state_t(), now, events, number, team)
+        commands = _half(now) + _robots(game_state_t(), now, events, players)
         return commands + _break(now) + _stopped(now) + ([] if now.stopped else [Command("START")])
     if _is_new_match(before, now, events):
-        return [Command("RESET"), *news(None, now, events, number, team)]
-    commands = _robots(before, now, events, number, team)
+        return [Command("RESET"), *news(None, now, events, players)]
+    commands = _robots(before, now, events, players)
     if now.state != before.state and now.state in _BREAKS:
         return commands + _break(now)
     if now.half != before.half or _begins_again(before, now):
@@ -61,23 +60,24 @@ def _robots(
     before: game_state_t,
     now: game_state_t,
     events: Sequence[game_event_t],
-    number: Callable[[str], int],
-    team: Callable[[str], str],
+    players: Mapping[str, Player],
 ) -> list[Command]:
     """Returns the goals, the cards, and the robots that left the field, between two states."""
     newer = events[before.decisions : now.decisions]
     causes = {robot: _cause(robot, newer) for robot in now.sent_off}
     off = [
-        Command(event.reason.upper(), team(event.robot), number(event.robot)) if event.robot else Command("PARK")
+        Command(event.reason.upper(), team_of_player(event.robot, players), number_of_player(event.robot, players))
+        if event.robot
+        else Command("PARK")
         for event in newer
         if event.reason in OFF_FIELD and any(event is cause for cause in causes.values())
     ]
     repairs = [
-        Command("REPAIR", team(robot), number(robot))
+        Command("REPAIR", team_of_player(robot, players), number_of_player(robot, players))
         for robot, cause in causes.items()
         if cause is None and robot not in before.sent_off
     ]
-    return _scores(before, now) + _cards(newer, number) + off + repairs
+    return _scores(before, now) + _cards(newer, players) + off + repairs
 
 
 def _cause(robot: str, events: Sequence[game_event_t]) -> game_event_t | None:
@@ -130,9 +130,9 @@ def _scores(before: game_state_t, now: game_state_t) -> list[Command]:
     return commands
 
 
-def _cards(events: Sequence[game_event_t], number: Callable[[str], int]) -> list[Command]:
+def _cards(events: Sequence[game_event_t], players: Mapping[str, Player]) -> list[Command]:
     return [
-        Command(_CARDS[event.card], TEAMS.get(event.team, ""), number(event.robot))
+        Command(_CARDS[event.card], TEAMS.get(event.team, ""), number_of_player(event.robot, players))
         for event in events
         if event.card in _CARDS
     ]

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from fwk import Component, Config, Logger, Reads, channel
 from lcmtypes.soccer import game_state_t, match_history_t
-from procs.model.robot import PLAYERS, Players, number_of, team_of
+from procs.model.robot import PLAYERS, Players
 from procs.refbox.news import news
 from procs.refbox.protocol import PORT, Command, Host, encode
 
@@ -69,24 +69,16 @@ class RefBoxServer(Component):
         now = self.game_state.value
         self._hear()
         events = self.match_history.value.events
-        self._send(news(self._before, now, events, self._number, self._team), list(self._stations))
+        self._send(news(self._before, now, events, self.config.players), list(self._stations))
         self._before = now
         newcomers = self._admit()
-        self._send([Command("WELCOME"), *news(None, now, events, self._number, self._team)], newcomers)
+        self._send([Command("WELCOME"), *news(None, now, events, self.config.players)], newcomers)
 
     def finalize(self) -> None:
         """Closes all connections."""
         self._arrivals.close()
         for each in (*self._stations, self._listening):
             each.close()
-
-    def _number(self, robot: str) -> int:
-        player = self.config.players.get(robot)
-        return player.number if player else number_of(robot)
-
-    def _team(self, robot: str) -> str:
-        player = self.config.players.get(robot)
-        return player.team if player else team_of(robot)
 
     def _hear(self) -> None:
         """Drops the messages of base stations, and cuts off those that have left."""
