@@ -1,5 +1,6 @@
 """The tables of a benchmark, and their place in docs/numbers.md."""
 
+import re
 from pathlib import Path
 
 from tools.bench import goals, tables
@@ -7,6 +8,8 @@ from tools.bench.figures import Runs
 from tools.bench.own import LONG
 from tools.bench.record import Record
 
+_COLOURS = re.compile(r"\x1b\[[0-9;]*m")
+_FOLDERS = re.compile(r"(?:/[\w.+-]+)+?(?=/build/|/bench-)")  # of one machine, before what is the same on all
 BEGIN, END = "<!-- bench: begin -->", "<!-- bench: end -->"
 
 
@@ -40,15 +43,22 @@ def _left_out(record: Record) -> list[str]:
     runs = Runs(record.runs)
     lines = [f"- {name}: {reason}" for name, reason in record.missing.items()]
     lines += [
-        f"- {peer.title}, {scenario.name}: {error}"
+        f"- {peer.title}, {scenario.name}: {_plain(error)}"
         for peer in record.peers
         for scenario in record.scenarios
         for error in runs.errors(peer.name, scenario.name)
     ]
     lines += [
-        f"- fwk, {scenario.name}: {error}" for scenario in record.own for error in runs.errors("fwk", scenario.name)
+        f"- fwk, {scenario.name}: {_plain(error)}"
+        for scenario in record.own
+        for error in runs.errors("fwk", scenario.name)
     ]
     return ["## Left out or failed", "\n".join(lines) or "Nothing."]
+
+
+def _plain(error: str) -> str:
+    """Returns an error without colours, and without the folders of the machine."""
+    return _FOLDERS.sub("...", _COLOURS.sub("", error))
 
 
 def insert(path: Path, generated: str) -> None:
