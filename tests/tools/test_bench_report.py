@@ -60,7 +60,10 @@ def test_errors_name_no_folder_of_the_machine() -> None:
     said = "spawning `/home/me/fwk/build/bench-peers/python` in `/tmp/bench-b3d36`; \x1b[32mINFO\x1b[0m at /dev/null"
     made = [*runs(), Run(1, "unix", "N=5", {"error": said})]
     written = report.text(Record({}, {}, ["lcm", "unix"], [5], [5], False, made))
-    assert "- Unix, N=5: spawning `.../build/bench-peers/python` in `.../bench-b3d36`; INFO at /dev/null" in written
+    assert (
+        "- Unix datagrams, N=5: spawning `.../build/bench-peers/python` in `.../bench-b3d36`; INFO at /dev/null"
+        in written
+    )
 
 
 def test_tick_table_gives_the_ratio_to_bare_lcm() -> None:

@@ -9,7 +9,7 @@ from tools.bench.own import LONG
 from tools.bench.record import Record
 
 _COLOURS = re.compile(r"\x1b\[[0-9;]*m")
-_FOLDERS = re.compile(r"(?:/[\w.+-]+)+?(?=/build/|/bench-)")  # of one machine, before what is the same on all
+_FOLDERS = re.compile(r"(?<![\w.])(?:/[\w.+-]+)+?(?=/build/|/bench-)")  # of one machine, before what is the same on all
 BEGIN, END = "<!-- bench: begin -->", "<!-- bench: end -->"
 
 
