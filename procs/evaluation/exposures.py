@@ -6,12 +6,13 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from lcmtypes.soccer import ball_percept_t, ground_truth_t, pose_t
+from lcmtypes.soccer import ball_percept_t, pose_t
 from procs.evaluation.piece import Piece
 from procs.evaluation.poses import START_S
 from procs.model.frames import Floats, rotation
 from procs.model.geometry import wrap_rad
 from procs.model.units import US_PER_S
+from procs.simulation.past import between
 
 T = TypeVar("T")
 
@@ -50,14 +51,14 @@ def scene_at(piece: Piece, robot: str, exposed: float) -> Scene | None:
     before, after, share = _around(piece.truth, exposed)
     if before is None or after is None:
         return None
-    earlier, later = _poses(before), _poses(after)
-    poses = {name: between(pose, later[name], share) for name, pose in earlier.items() if name in later}
-    own = poses.pop(robot, None)
+    truth = between(before, after, share, piece.period_s)
+    places = {each.name: each for each in truth.robots}
+    own = places.pop(robot, None)
     if own is None:
         return None
-    ball_m = between(_ball(before), _ball(after), share)
-    places_m = np.array([ball_m, *(pose[:2] for pose in poses.values())])
-    seen_m = (places_m - own[:2]) @ rotation(float(own[2]))
+    others_m = [(each.x_m, each.y_m) for each in places.values()]
+    offsets_m = np.array([(truth.ball_x_m, truth.ball_y_m), *others_m]) - (own.x_m, own.y_m)
+    seen_m = offsets_m @ rotation(own.heading_rad)
     return Scene(seen_m[0], seen_m[1:])
 
 
@@ -66,14 +67,13 @@ def pose_at(poses: Mapping[int, pose_t], exposed: float) -> Floats | None:
     before, after, share = _around(poses, exposed)
     if before is None or after is None or not (before.localized and after.localized):
         return None
-    return between(_values(before), _values(after), share)
+    return pose_between(_values(before), _values(after), share)
 
 
-def between(before: Floats, after: Floats, share: float) -> Floats:
-    """Returns the place (2) or pose (3) on the way from one to another; headings turn the shorter way."""
+def pose_between(before: Floats, after: Floats, share: float) -> Floats:
+    """Returns the pose (3) on the way from one to another; headings turn the shorter way."""
     way = after - before
-    if len(way) > 2:
-        way[2] = wrap_rad(float(way[2]))
+    way[2] = wrap_rad(float(way[2]))
     return np.asarray(before + share * way)
 
 
@@ -82,14 +82,6 @@ def _around(values: Mapping[int, T], exposed: float) -> tuple[T | None, T | None
     first = math.floor(exposed + 1e-6)
     share = max(0.0, exposed - first)
     return values.get(first), values.get(first + 1 if share > 1e-6 else first), share
-
-
-def _poses(truth: ground_truth_t) -> dict[str, Floats]:
-    return {robot.name: np.array((robot.x_m, robot.y_m, robot.heading_rad)) for robot in truth.robots}
-
-
-def _ball(truth: ground_truth_t) -> Floats:
-    return np.array((truth.ball_x_m, truth.ball_y_m))
 
 
 def _values(pose: pose_t) -> Floats:

@@ -34,7 +34,7 @@ class _Belief(NamedTuple):
     carried: bool
     """The robot was set down elsewhere in this tick."""
     stands: bool
-    """It neither drives nor turns."""
+    """The robot neither drives nor turns."""
 
     @property
     def wrong(self) -> bool:

@@ -12,7 +12,7 @@ from procs.model.frames import Floats
 from procs.model.robot import ROBOT
 from procs.simulation.sight import hidden
 
-REACHES_M = (("up to 2.5 m", 0.0, 2.5), ("2.5 to 5 m", 2.5, 5.0), ("5 to 7.5 m", 5.0, 7.5))
+_REACHES_M = (("up to 2.5 m", 0.0, 2.5), ("2.5 to 5 m", 2.5, 5.0), ("5 to 7.5 m", 5.0, 7.5))
 """Name and limits of each distance that is measured."""
 _SAME_M, _SAME_SHARE = 0.3, 0.2  # a ball further from the true one, with this share of its distance, is another one
 
@@ -22,7 +22,7 @@ def sightings(piece: Piece) -> Samples:
 
     Counted are balls on the ground; found must be those that no robot hides, not even in part.
     """
-    found: dict[str, list[bool]] = {f"ball found in a frame, {name}": [] for name, _, _ in REACHES_M}
+    found: dict[str, list[bool]] = {f"ball found in a frame, {name}": [] for name, _, _ in _REACHES_M}
     false: list[bool] = []
     placed = placed_ticks(piece)
     for robot, tick, exposed, percept in frames_of(piece):
@@ -32,10 +32,10 @@ def sightings(piece: Piece) -> Samples:
             continue
         false.append(bool(percept.visible) and not _is_at(percept, scene.ball_m))
         away_m = math.hypot(*scene.ball_m)
-        if hidden(scene.ball_m[None], scene.others_m.reshape(-1, 2), ROBOT.radius_m)[0] == 0.0:
+        if hidden(scene.ball_m[None], scene.others_m, ROBOT.radius_m)[0] == 0.0:
             seen: list[ball_percept_t | ball_candidate_t] = [percept] if percept.visible else []
             seen += percept.others
-            for name, least_m, most_m in REACHES_M:
+            for name, least_m, most_m in _REACHES_M:
                 if least_m <= away_m < most_m:
                     found[f"ball found in a frame, {name}"].append(any(_is_at(one, scene.ball_m) for one in seen))
     return {name: np.array(values, np.float64) for name, values in found.items()} | {

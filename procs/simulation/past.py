@@ -40,7 +40,11 @@ def _between(earlier: ground_truth_t, later: ground_truth_t, time_us: int) -> gr
     span_us = later.header.time_us - earlier.header.time_us
     if span_us <= 0 or time_us == earlier.header.time_us:
         return earlier
-    share, span_s = (time_us - earlier.header.time_us) / span_us, span_us / 1e6
+    return between(earlier, later, (time_us - earlier.header.time_us) / span_us, span_us / 1e6)
+
+
+def between(earlier: ground_truth_t, later: ground_truth_t, share: float, span_s: float) -> ground_truth_t:
+    """Returns the world after a share of the way from one message to another, which is `span_s` later."""
     made = ground_truth_t()
     made.header = earlier.header
     way_m = math.dist((earlier.ball_x_m, earlier.ball_y_m), (later.ball_x_m, later.ball_y_m))

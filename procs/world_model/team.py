@@ -10,7 +10,7 @@ from lcmtypes.soccer import pass_agreement_t
 from procs.model.frames import Floats
 from procs.model.geometry import wrap_rad
 
-_LEAST_M = 0.005  # deviation of a position whose sender claims less
+_LEAST_M = 0.005  # deviation of a position besides that which its sender claims
 _ACCELERATION_M_S2 = 3.0  # deviation of a mate's acceleration since its message
 _DRIFT_M_S = 0.5  # most by which its acceleration moves it from the extrapolated place, in a second
 _TURNING_S = 0.25  # messages further apart do not tell the speed of turning

@@ -163,7 +163,7 @@ def test_taker_keeps_its_receiver_once_the_ball_may_be_played() -> None:
     assert order.heading_rad == pytest.approx(math.pi / 4)
 
 
-def test_taker_keeps_to_another_receiver_when_the_first_is_blocked() -> None:
+def test_taker_keeps_to_one_receiver_when_the_first_is_blocked() -> None:
     spot, tactics = Point(0.0, 0.0), Tactics(FIELD)
     game = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=spot)
     own, first = robot("cyan2", -0.3, 0.0), robot("cyan3", 4.0, 0.0, role=SUPPORTER)

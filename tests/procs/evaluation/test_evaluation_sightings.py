@@ -14,7 +14,7 @@ from lcmtypes.soccer import (
     true_robot_t,
     world_model_t,
 )
-from procs.evaluation.exposures import between, frames_of, pose_at, scene_at
+from procs.evaluation.exposures import frames_of, pose_at, pose_between, scene_at
 from procs.evaluation.innovations import innovations
 from procs.evaluation.piece import Piece
 from procs.evaluation.sightings import sightings
@@ -96,7 +96,7 @@ def test_truth_is_that_of_the_exposure() -> None:
 
 
 def test_headings_turn_the_shorter_way() -> None:
-    middle = between(np.array((0.0, 0.0, 3.1)), np.array((1.0, 0.0, -3.1)), 0.5)
+    middle = pose_between(np.array((0.0, 0.0, 3.1)), np.array((1.0, 0.0, -3.1)), 0.5)
     assert middle.tolist() == pytest.approx([0.5, 0.0, math.pi])
 
 
