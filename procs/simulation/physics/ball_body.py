@@ -67,12 +67,14 @@ class Ball:
         self._shape.filter = ball_filter(self.z_m >= self._robot_height_m, self.z_m > self._goal_height_m)
         return landed
 
-    def rub(self, duration_s: float) -> None:
-        """Lets the ground act on the ball for a while, unless it flies."""
+    def rub(self, duration_s: float, vx_m_s: float, vy_m_s: float, omega_rad_s: float) -> None:
+        """Lets the ground act for a while on a ball of this velocity, unless it flies."""
         if self.flies:
+            self.body.velocity = vx_m_s, vy_m_s
             return
-        self.body.angular_velocity *= math.exp(-duration_s / self._spin_s)
-        self.body.velocity = self.friction.advance(*self.body.velocity, duration_s)
+        if omega_rad_s:
+            self.body.angular_velocity = omega_rad_s * math.exp(-duration_s / self._spin_s)
+        self.body.velocity = self.friction.advance(vx_m_s, vy_m_s, duration_s)
 
     def throw(self, height_m: float, vx_m_s: float, vy_m_s: float, vz_m_s: float) -> None:
         """Lifts the ball to a height and gives it a velocity; one that is thrown down on the ground bounces at once."""

@@ -1,5 +1,6 @@
 """All bodies of the physics engine at once: one call reads their states, another one sets their forces."""
 
+import struct
 from array import array
 
 import pymunk
@@ -10,6 +11,7 @@ _STATE_FIELDS = (
 )
 _FORCE_FIELDS = batch.BodyFields.FORCE | batch.BodyFields.TORQUE
 _NUMBERS = 3  # of a force and a torque
+_STATE = struct.Struct("6d")
 
 State = tuple[float, float, float, float, float, float]
 """Position x and y in m, angle in rad, velocity x and y in m/s and turning in rad/s of a body, world frame."""
@@ -26,15 +28,15 @@ class Bodies:
         self._forces = array("d", [0.0] * _NUMBERS * (self._count + 1))
         self._written = batch.Buffer()
         self._written.set_float_buf(self._forces)
+        self._effects = struct.Struct(f"{_NUMBERS * self._count}d")
 
     def states(self) -> list[State]:
         """Returns the states of all bodies."""
         self._read.clear()
         batch.get_space_bodies(self._space, _STATE_FIELDS, self._read)
-        numbers = iter(memoryview(self._read.float_buf()).cast("d").tolist())
-        return list(zip(numbers, numbers, numbers, numbers, numbers, numbers, strict=True))[: self._count]
+        return list(_STATE.iter_unpack(self._read.float_buf()))[: self._count]
 
     def push(self, effects: list[float]) -> None:
         """Sets force (x and y in N, world frame) and torque (Nm) of each body for the coming step, body by body."""
-        self._forces[: _NUMBERS * self._count] = array("d", effects)
+        self._effects.pack_into(self._forces, 0, *effects)
         batch.set_space_bodies(self._space, _FORCE_FIELDS, self._written)

@@ -47,8 +47,21 @@ class Drive:
         first, second, third = (min(limit, max(-limit, 0.0 if math.isnan(speed) else speed)) for speed in wheels_m_s)
         self._line.put((first, second, third), now_us)
 
-    def turn_motors(self, now_us: int, duration_s: float) -> None:
-        """Lets the motors follow their commands for a while."""
+    def turn(
+        self, now_us: int, duration_s: float, vx_m_s: float, vy_m_s: float, omega_rad_s: float
+    ) -> tuple[float, float, float]:
+        """Lets the motors follow their commands for a while, and counts the work of the wheels.
+
+        Args:
+            now_us: logical time at the beginning.
+            duration_s: the while.
+            vx_m_s: velocity of the body, robot frame.
+            vy_m_s: the same to the left.
+            omega_rad_s: turning of the body.
+
+        Returns:
+            Force of the wheels along x and y of the robot frame in N, and their torque in Nm.
+        """
         if self._line.next_us <= now_us:
             *_, self._wanted_m_s = self._line.due(now_us)
         if duration_s != self._step_s:
@@ -58,7 +71,11 @@ class Drive:
         if self.stuck:
             a, b, c = (0.0 if wheel in self.stuck else speed for wheel, speed in enumerate((a, b, c)))
             to_a, to_b, to_c = (0.0 if wheel in self.stuck else speed for wheel, speed in enumerate((to_a, to_b, to_c)))
-        self.wheels_m_s = a + (to_a - a) * share, b + (to_b - b) * share, c + (to_c - c) * share
+        rim_1, rim_2, rim_3 = self.wheels_m_s = (
+            a + (to_a - a) * share,
+            b + (to_b - b) * share,
+            c + (to_c - c) * share,
+        )
         way_a, way_b, way_c = self._travelled_m
         self._travelled_m = (
             way_a + to_a * duration_s + (a - to_a) * catching_up_s,
@@ -66,14 +83,7 @@ class Drive:
             way_c + to_c * duration_s + (c - to_c) * catching_up_s,
         )
         self._measured_s += duration_s
-
-    def push(self, vx_m_s: float, vy_m_s: float, omega_rad_s: float) -> tuple[float, float, float]:
-        """Returns force in N along x and y of the robot frame and torque in Nm; the velocity is the body's.
-
-        They act for the step of `turn_motors`, whose work is counted.
-        """
         distance_m, full_slip_m_s, grip_n = self._distance_m, self._full_slip_m_s, self._grip_n
-        rim_1, rim_2, rim_3 = self.wheels_m_s
         # Speeds of the ground below the wheels as in `wheels_of`, whose call would cost a tenth of a step.
         turn_m_s, side_m_s, ahead_m_s = distance_m * omega_rad_s, 0.5 * vy_m_s, SIN_60 * vx_m_s
         first = grip_n * math.tanh((rim_1 - (side_m_s - ahead_m_s + turn_m_s)) / full_slip_m_s)
@@ -81,7 +91,7 @@ class Drive:
         third = grip_n * math.tanh((rim_3 - (ahead_m_s + side_m_s + turn_m_s)) / full_slip_m_s)
         power_w = first * rim_1 + second * rim_2 + third * rim_3
         if power_w > 0.0:
-            self._work_j += power_w * self._step_s
+            self._work_j += power_w * duration_s
         return SIN_60 * (third - first), 0.5 * (first + third) - second, distance_m * (first + second + third)
 
     def take_work_j(self) -> float:

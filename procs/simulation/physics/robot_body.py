@@ -85,8 +85,9 @@ class Robot:
         """
         _, _, angle_rad, vx, vy, omega_rad_s = state
         cos, sin = math.cos(angle_rad), math.sin(angle_rad)
-        self.drive.turn_motors(now_us, duration_s)
-        force_x, force_y, torque = self.drive.push(cos * vx + sin * vy, cos * vy - sin * vx, omega_rad_s)
+        force_x, force_y, torque = self.drive.turn(
+            now_us, duration_s, cos * vx + sin * vy, cos * vy - sin * vx, omega_rad_s
+        )
         return cos * force_x - sin * force_y, sin * force_x + cos * force_y, torque
 
 

@@ -213,12 +213,7 @@ class World:
             if push is not None:
                 pushes[name] = push
         self._bodies.push(effects)
-        # All pushes act on the ball as it was before the step, so that the order of two rivals does not matter.
-        for push in pushes.values():
-            self.ball.body.velocity += push.change_m_s
-            self.ball.vz_m_s += push.lift_m_s
-        events += [self._ball_event(Kind.KICK, name) for name, push in pushes.items() if push.kicked]
-        self.ball.rub(duration_s)
+        events += self._move_ball(duration_s, ball, pushes)
         self._space.step(duration_s)
         fallen_on = self._tops.fall(duration_s)
         states = self._bodies.states()
@@ -236,6 +231,20 @@ class World:
         if call is not None:
             events.append(self._ball_event(call, self.last_touch))
         return states
+
+    def _move_ball(self, duration_s: float, ball: State, pushes: Mapping[str, Push]) -> list[Event]:
+        """Lets kickers and the ground act on the ball for one step; returns the kicks.
+
+        All pushes act on the ball as it was before the step, so that the order of two rivals does not matter.
+        """
+        x_m, y_m, _, vx_m_s, vy_m_s, omega_rad_s = ball
+        for push in pushes.values():
+            change_x_m_s, change_y_m_s = push.change_m_s
+            vx_m_s, vy_m_s = vx_m_s + change_x_m_s, vy_m_s + change_y_m_s
+            self.ball.vz_m_s += push.lift_m_s
+        self.ball.rub(duration_s, vx_m_s, vy_m_s, omega_rad_s)
+        speed_m_s = math.hypot(vx_m_s, vy_m_s)
+        return [Event(Kind.KICK, name, "", x_m, y_m, speed_m_s) for name, push in pushes.items() if push.kicked]
 
     def _ball_event(self, kind: Kind, robot: str) -> Event:
         return Event(kind, robot, "", *self.ball.body.position, self.ball.speed_m_s)
