@@ -94,6 +94,11 @@ class Drive:
             self._work_j += power_w * duration_s
         return SIN_60 * (third - first), 0.5 * (first + third) - second, distance_m * (first + second + third)
 
+    def halt(self) -> None:
+        """Stops motors and wheels at once, and drops the commands that have not taken effect yet."""
+        self._line.clear()
+        self.wheels_m_s = self._wanted_m_s = (0.0, 0.0, 0.0)
+
     def take_work_j(self) -> float:
         """Returns the work of the wheels at their rims since the last call; braking counts nothing."""
         work_j, self._work_j = self._work_j, 0.0

@@ -54,7 +54,8 @@ class Robot:
         return Velocity(forward, left, self.body.angular_velocity)
 
     def put(self, x_m: float, y_m: float, heading_rad: float) -> None:
-        """Sets the robot down at rest."""
+        """Sets the robot down at rest, its motors too."""
+        self.drive.halt()
         self.body.position, self.body.angle = (x_m, y_m), wrap_rad(heading_rad)  # so that a huge one can still change
         self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
 

@@ -165,3 +165,25 @@ def test_reset_takes_robots_and_ball_back() -> None:
     world.port("reset").put()
     world.iterate()
     assert world.port("ground_truth").sent[-1].ball_x_m == 0.0
+
+
+@pytest.mark.parametrize("frozen", [False, True])
+@pytest.mark.parametrize(("command", "values"), [("place_robot", {"robot": "cyan1", "x_m": -4.0}), ("reset", {})])
+def test_robot_that_is_set_down_stays_there(command: str, values: dict[str, object], frozen: bool) -> None:
+    """Its wheels turned before, and commands were on their way to its motors."""
+    world = bench(errors={"drive_delay_s": 0.12})
+    for _ in range(20):
+        drive = wheel_command_t(wheel_m_s=[-2.0, 0.0, 2.0])
+        drive.header.time_us = world.time_us
+        world.port("wheel_command", "cyan1").put(drive)
+        world.iterate()
+    world.port("freeze").put(frozen=frozen)
+    world.iterate(8)  # the last command gets too old
+    world.port("wheel_command", "cyan1").put(drive)
+    world.port(command).put(**values)
+    world.iterate()
+    before = world.port("ground_truth").sent[-1].robots[0]
+    world.port("freeze").put(frozen=False)
+    world.iterate(10)
+    robot = world.port("ground_truth").sent[-1].robots[0]
+    assert math.dist((robot.x_m, robot.y_m), (before.x_m, before.y_m)) < 1e-6
