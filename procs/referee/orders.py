@@ -72,7 +72,7 @@ def _set_piece(whistle: Whistle, sight: Sight, name: str, team: Team) -> str:
         State.PENALTY: lambda: restarts.penalty(team, field, ends),
     }
     if whistle.shootout and team is not whistle.shootout.shooter:
-        if whistle.held or not whistle.stopped:  # the penalty at hand was started
+        if whistle.started:
             whistle.end_penalty(scored=False)
             if whistle.at_rest or whistle.shootout.shooter is team:
                 return ""

@@ -39,6 +39,8 @@ class Whistle:
         """Robots take position; the ball is not to be touched."""
         self.held = False
         """The game stays stopped until it is started by hand."""
+        self.started = False
+        """The set piece at hand was started, though a person may have stopped it since."""
         self.half = halves.FIRST
         self.score = {Team.CYAN: 0, Team.MAGENTA: 0}
         self.ends = Ends()
@@ -163,7 +165,7 @@ class Whistle:
         """Stops the game for a set piece and has the ball placed."""
         self._repeats = self._repeats + 1 if restart == self.restart and not self.stopped else 0
         self._enter(restart.state, restart.team, stopped=True)
-        self.held = self._starting = False
+        self.held = self.started = self._starting = False
         self.calls.append(Call(restart.state, restart.team, robot=robot, reason=reason))
         self._ball.place(restart.spot)
 
@@ -174,7 +176,7 @@ class Whistle:
             return
         self._enter(self.state, self.team, stopped=False)
         self.held = self._changing_ends = False
-        self._begun = True
+        self.started = self._begun = True
         excused = misplaced_robots(self.restart, sight, self.ends, self.rules.field) if sight else []
         ball = sight.ball if sight else self.spot
         self._stretch = Stretch(self.state, ball, frozenset(excused))

@@ -136,6 +136,17 @@ def test_penalty_of_the_other_team_makes_it_a_miss() -> None:
         assert (script.state, counted(script)) == ((State.PENALTY, MAGENTA, True), ([1, 0], [0, 0]))
 
 
+@pytest.mark.parametrize("automatic", [True, False])
+def test_stop_before_the_start_makes_no_penalty_a_miss(automatic: bool) -> None:
+    script = Script(penalties=2, decide=True, automatic=automatic)
+    for command, team in (("penalties", ""), ("stop", ""), ("penalty", "magenta")):
+        assert ask(script, command, team) == ""
+    assert (script.state, counted(script)) == ((State.PENALTY, MAGENTA, True), ([0, 0], [0, 0]))
+    for command, team in (("start", ""), ("goal", "magenta"), ("stop", ""), ("penalty", "magenta")):
+        assert ask(script, command, team) == ""
+    assert (script.state, counted(script)) == ((State.PENALTY, MAGENTA, True), ([0, 1], [0, 1]))
+
+
 def test_penalty_of_the_same_team_repeats_it() -> None:
     script = penalties()
     ask(script, "start")
