@@ -23,7 +23,7 @@ from procs.referee.reasons import Reason
 from procs.referee.restarts import Restart
 from procs.referee.rules import Rules
 from procs.referee.shootout import Shootout, penalty_scored
-from procs.referee.sight import Sight
+from procs.referee.sight import LEAVES, Sight
 from procs.referee.stretch import Stretch
 
 _REPEATS = 2  # of a set piece; then the game goes on in spite of a breach
@@ -103,7 +103,7 @@ class Whistle:
         if not self.rules.automatic:
             self._follow(duration_s, sight)
         elif not self.shootout and self.time_in_half_s >= halves.length_s(self.half, self.rules):
-            self.end_half()
+            self._end_in_time(duration_s, sight)
         elif self.stopped:
             self._wait_for_robots(duration_s, sight)
         else:
@@ -148,6 +148,15 @@ class Whistle:
             self.calls.append(Call(self.state, Team.NONE))
         else:
             self.end_match()
+
+    def _end_in_time(self, duration_s: float, sight: Sight) -> None:
+        """Ends the half whose time is over; a ball that went into a goal in this last tick was there in time."""
+        if not self.stopped:
+            self._stretch.watch(duration_s, sight, self.ends, self.rules)
+            left = next((event for event in sight.events if event.kind in LEAVES), None)
+            if left and left.kind is Kind.GOAL:
+                self._count_goal(left, sight)
+        self.end_half()
 
     def _end_break(self) -> None:
         following = halves.after(self.half, self.score, self.rules)
@@ -261,13 +270,19 @@ class Whistle:
         elif event.kind is Kind.OUT_END:
             self.interrupt(restarts.after_goal_line(place, team, field, self.ends))
         elif event.kind is Kind.GOAL:
-            verdict = goals.judge(place, self._stretch.piece, self._stretch.touches, sight, self.ends, field)
-            if verdict.scorer:
-                self.goal(verdict.scorer)
+            verdict = self._count_goal(event, sight)
             self.interrupt(verdict.restart, verdict.reason)
         else:
             return False
         return True
+
+    def _count_goal(self, event: Event, sight: Sight) -> goals.Verdict:
+        """Judges a ball in a goal, and counts the goal if it is one."""
+        place, stretch = Point(event.x_m, event.y_m), self._stretch
+        verdict = goals.judge(place, stretch.piece, stretch.touches, sight, self.ends, self.rules.field)
+        if verdict.scorer:
+            self.goal(verdict.scorer)
+        return verdict
 
     def _watch_play(self, scene: Scene) -> None:
         ball = scene.sight.ball

@@ -8,7 +8,7 @@ from procs.model.game_states import State
 from procs.model.teams import Team
 from procs.referee.cards import Card
 from procs.referee.shootout import Shootout
-from tests.procs.referee.script import CYAN, MAGENTA, Script
+from tests.procs.referee.script import CYAN, MAGENTA, TICK_S, Script
 
 BESIDE = {"cyan2": Point(6.9, 0.0), "cyan3": Point(3.0, 2.0), "magenta2": Point(3.0, -2.0), "magenta3": Point(2.0, 3.0)}
 
@@ -157,3 +157,17 @@ def test_penalties_go_on_in_pairs_after_five() -> None:
     assert not shootout.decided
     shootout.shot(False)
     assert shootout.decided
+
+
+@pytest.mark.parametrize(
+    ("place", "by", "score"),
+    [(11.2, "cyan2", (1, 0)), (-11.2, "cyan2", (0, 1)), (11.2, "magenta2", (1, 0)), (-11.2, "magenta2", (0, 0))],
+)
+def test_goal_in_the_last_tick_of_a_half_counts(place: float, by: str, score: tuple[int, int]) -> None:
+    script = Script(decide=True).playing()
+    whistle, ball = script.whistle, Point(4.0, 0.0)
+    whistle.rules = whistle.rules.model_copy(update={"half_s": whistle.time_in_half_s + TICK_S})
+    script.tick(Event(Kind.TOUCH, by, "", *ball, 5.0), Event(Kind.GOAL, by, "", place, 0.3, 5.0))
+    assert (script.score, script.state) == (score, (State.HALF_TIME, Team.NONE, True))
+    script.goal(place, by)
+    assert script.score == score, "the ball in the goal is counted once"
