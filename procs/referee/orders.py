@@ -16,7 +16,8 @@ from procs.referee.sight import Sight
 from procs.referee.whistle import Whistle
 
 _USUAL = Names(PLAYERS)
-_TEAMS = {"": Team.NONE, "cyan": Team.CYAN, "magenta": Team.MAGENTA}
+TEAMS = {"": Team.NONE, "cyan": Team.CYAN, "magenta": Team.MAGENTA}
+"""Teams by the names that commands give them."""
 CARDS = {"yellow_card": Card.YELLOW, "double_yellow": Card.DOUBLE_YELLOW, "red_card": Card.RED}
 GOALS = ("goal", "subgoal")
 """`subgoal` takes a goal back."""
@@ -36,17 +37,17 @@ COMMANDS = (*SET_PIECES, *GOALS, *CARDS, *REPAIRS, *HALVES, *PLAIN)
 
 def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: str = "", names: Names = _USUAL) -> str:
     """Carries out a command; returns why it is impossible, or an empty text. `robot` is a namespace."""
-    if team not in _TEAMS:
+    if team not in TEAMS:
         return f"no team '{team}'; there are cyan, magenta"
-    refused = why_not(whistle, name, _TEAMS[team])
+    refused = why_not(whistle, name, TEAMS[team])
     if refused:
         return refused
     if name in SET_PIECES:
-        return _set_piece(whistle, sight, name, _TEAMS[team])
+        return _set_piece(whistle, sight, name, TEAMS[team])
     if name in GOALS:
-        return _goal(whistle, _TEAMS[team], name == "goal")
+        return _goal(whistle, TEAMS[team], name == "goal")
     if name in CARDS or name in REPAIRS:
-        return _robot(whistle, sight, name, _TEAMS[team], robot, names)
+        return _robot(whistle, sight, name, TEAMS[team], robot, names)
     if name in HALVES:
         whistle.begin_half(HALVES[name], first=whistle.kicks_off(HALVES[name]))
         return ""

@@ -11,13 +11,24 @@ from pydantic import BaseModel, ValidationError
 
 from procs.model.field import Point
 from procs.model.robot import TEAM_NUMBERS, team_of
-from procs.referee.orders import COMMANDS
+from procs.referee.orders import COMMANDS, TEAMS
 from procs.simulation.physics.room import Room
 from procs.simulation.simulator import SimulatorConfig
 
 
 class UniqueKeys(yaml.SafeLoader):
     """Reads YAML and refuses a key that is given twice, of which PyYAML keeps the last alone."""
+
+    def construct_object(self, node: yaml.Node, deep: bool = False) -> Any:
+        """Returns the value of a node.
+
+        Raises:
+            ConstructorError: the value is impossible, such as a date in a thirteenth month.
+        """
+        try:
+            return super().construct_object(node, deep)
+        except ValueError as error:
+            raise yaml.constructor.ConstructorError(None, None, f"no such value: {error}", node.start_mark) from error
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         """Returns the values by their keys.
@@ -94,9 +105,13 @@ def command_mistakes(commands: Sequence[Any], everyone: Sequence[str], time_s: f
         name = (action.referee or {}).get("name", "")
         if action.referee is not None and name not in COMMANDS:
             yield f"commands.{place}: referee: no command '{name}'; {right_name(name, COMMANDS)}"
-        robot = (action.place_robot or {}).get("robot")
-        if robot and robot not in everyone:
-            yield f"commands.{place}: place_robot: no robot '{robot}'; {right_name(robot, everyone)}"
+        for kind, fields in (("place_robot", action.place_robot), ("referee", action.referee)):
+            robot = (fields or {}).get("robot", "")
+            if robot not in everyone and (robot or kind == "place_robot") and fields is not None:
+                yield f"commands.{place}: {kind}: no robot '{robot}'; {right_name(robot, everyone)}"
+        team = (action.referee or {}).get("team", "")
+        if team not in TEAMS:
+            yield f"commands.{place}: referee: no team '{team}'; {right_name(team, [each for each in TEAMS if each])}"
 
 
 def place_mistakes(places: Mapping[str, Sequence[float]], config: SimulatorConfig) -> Iterator[str]:

@@ -101,6 +101,8 @@ def read(path: Path) -> Scenario:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         raise ScenarioError(f"{path}:{mark.line + 1 if mark else 1}: {error.problem or error.context}") from error
+    except RecursionError as error:
+        raise ScenarioError(f"{path}: its values are nested too deep") from error
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise ScenarioError(f"{path}: {error}") from error
     if not isinstance(content, dict):
@@ -145,9 +147,16 @@ def _mistakes(scenario: Scenario) -> list[str]:
 
 
 def _unknown_in(scenario: Scenario) -> list[str]:
-    """Returns the conditions that name a channel, field, robot or state that the first tick does not have."""
-    system, found = system_of(scenario), []
-    system.tick()
+    """Returns the conditions that name a channel, field, robot or state that the first tick does not have.
+
+    Settings with which no system begins, such as two robots of one number, come before.
+    """
+    found = list[str]()
+    try:
+        system = system_of(scenario)
+        system.tick()
+    except ValueError as error:
+        return [str(error)]
     for text in (*scenario.eventually, *scenario.in_order, *scenario.always, *scenario.at_end):
         try:
             Expression(text, WORDS).holds(system.newest)

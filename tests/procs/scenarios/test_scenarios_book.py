@@ -110,6 +110,26 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
         ("at_end: [ball_speed < 1]\nball: {x_m: .nan}", ScenarioError, "ball.x_m: .*finite number"),
         ("commands: [{at_s: .nan, place_ball: {}}]", ScenarioError, "commands.0.at_s: "),
         ("commands: [{place_robot: {x_m: .inf}}]", ScenarioError, "x_m is inf; it should be a finite number"),
+        ("robots: [cyan1]\ntime_s: 2026-13-45", ScenarioError, "mine.yaml:2: no such value: month must be in 1..12"),
+        (f"seed: {'9' * 5000}", ScenarioError, "mine.yaml:1: no such value: Exceeds the limit"),
+        (f"robots: {'[' * 2000}{']' * 2000}", ScenarioError, "mine.yaml: its values are nested too deep"),
+        ("robots: [cyan1, cyan01]\nat_end: [reasons]", ScenarioError, "players: cyan01 and cyan1 are both cyan 1"),
+        (
+            "robots: [cyan1]\nat_end: [reasons]\nsettings: {world/simulator: {stuck_wheels: {cyan2: [1]}}}",
+            ScenarioError,
+            "mine.yaml: world/simulator: stuck_wheels: no robot 'cyan2'; there are: cyan1",
+        ),
+        (
+            "robots: [cyan1]\nat_end: [reasons]\ncommands: [{referee: {name: repair, robot: cyan2}}]",
+            ScenarioError,
+            "commands.0: referee: no robot 'cyan2'; did you mean 'cyan1'?",
+        ),
+        (
+            "robots: [cyan1]\nat_end: [reasons]\ncommands: [{referee: {name: corner, team: red}}]",
+            ScenarioError,
+            "commands.0: referee: no team 'red'; there are cyan, magenta",
+        ),
+        ("robots: [cyan1]\ncommands: [{place_robot: {}}]", ScenarioError, "place_robot: no robot ''; there are cyan1"),
     ],
 )
 def test_bad_scenario_is_named(tmp_path: Path, text: str, error: type[Exception], message: str) -> None:
