@@ -1,7 +1,7 @@
 """Room on the ground for the ball and robots: places between the walls that are clear of goals and of robots."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import chain, combinations
 
 from procs.model.field import SIDES, Field, Point, Segment
@@ -55,10 +55,17 @@ class Room:
             return False
         return all(_distance_m(place, net) >= NET_RADIUS_M + radius_m - _SLACK_M for net in self._nets)
 
-    def nearest(self, wanted: Point, radius_m: float, robots: Sequence[Point], clearance_m: float) -> Point | None:
+    def nearest(
+        self,
+        wanted: Point,
+        radius_m: float,
+        robots: Sequence[Point],
+        clearance_m: float,
+        accepts: Callable[[Point], bool] = lambda _: True,
+    ) -> Point | None:
         """Returns the free place nearest to the wanted one, or 8 % further away at most; None if no place is free.
 
-        The arguments are those of `is_free`.
+        The arguments are those of `is_free`; `accepts` may refuse places.
         """
         x_m, y_m = self._x_m - radius_m, self._y_m - radius_m
         wanted = Point(clamp(wanted.x_m, -x_m, x_m), clamp(wanted.y_m, -y_m, y_m))
@@ -66,7 +73,8 @@ class Room:
         places = _around(wanted, 2 * math.hypot(self._x_m, self._y_m))
         if math.dist(wanted, beside) <= clearance_m:
             places = chain([beside], places)
-        return next((place for place in places if self.is_free(place, radius_m, robots, clearance_m)), None)
+        free = (place for place in places if self.is_free(place, radius_m, robots, clearance_m))
+        return next(filter(accepts, free), None)
 
 
 def _around(middle: Point, farthest_m: float) -> Iterator[Point]:

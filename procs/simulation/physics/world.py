@@ -1,7 +1,7 @@
 """The world of a match: field, ball and robots, moved by a rigid-body engine in small steps."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import pymunk
@@ -144,7 +144,7 @@ class World:
         if not self._put_ball(Point(x_m, y_m), self._middles()):
             return False
         self.last_touch = ""
-        self._judge.ball_in_field = self._field.in_field(*self.ball.body.position, self.ball.radius_m)
+        self._judge.ball_in_field = self._is_in_field(Point(*self.ball.body.position))
         return True
 
     def throw_ball(self, height_m: float, velocity_m_s: tuple[float, float, float]) -> None:
@@ -177,17 +177,25 @@ class World:
     def _clear_ball(self, poses: Mapping[str, Pose], robots: Sequence[Point]) -> bool:
         """Puts a ball that lies where robots are set down beside all `robots`; returns False if there is no room.
 
-        A ball that touches no more than a robot's hull, as in its mouth, stays where it is.
+        A ball that touches no more than a robot's hull, as in its mouth, stays where it is. One that is in the field
+        stays in the field: who sets a robot down scores no goal.
         """
         ball, least_m = self.ball, self.ball.radius_m - _PRESSED_M
         if ball.flies or all(
             self.robots[name].gap_m(pose, *ball.body.position) >= least_m for name, pose in poses.items()
         ):
             return True
-        return self._put_ball(Point(*ball.body.position), robots)
+        at = Point(*ball.body.position)
+        was_in_field = self._is_in_field(at)
+        return self._put_ball(at, robots, lambda place: self._is_in_field(place) or not was_in_field)
 
-    def _put_ball(self, wanted: Point, robots: Sequence[Point]) -> bool:
-        place = self._room.nearest(wanted, self.ball.radius_m, robots, self._clearance_m)
+    def _is_in_field(self, place: Point) -> bool:
+        return self._field.in_field(*place, self.ball.radius_m)
+
+    def _put_ball(
+        self, wanted: Point, robots: Sequence[Point], accepts: Callable[[Point], bool] = lambda _: True
+    ) -> bool:
+        place = self._room.nearest(wanted, self.ball.radius_m, robots, self._clearance_m, accepts)
         if place is not None:
             self.ball.put(*place)
             self._bar.begin_at(place.x_m)

@@ -39,6 +39,28 @@ def test_robot_on_the_ball_pushes_it_aside(x_m: float) -> None:
     assert math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s) < 0.1
 
 
+@pytest.mark.parametrize(
+    ("ball", "robot"),
+    [
+        ((10.95, 0.3), (10.7, 0.3)),
+        ((-10.95, 0.3), (-10.8, 0.4)),
+        ((4.0, 6.95), (4.0, 6.8)),
+        ((10.95, 3.0), (10.8, 3.0)),
+    ],
+)
+def test_robot_on_the_ball_pushes_it_over_no_line(ball: tuple[float, float], robot: tuple[float, float]) -> None:
+    """Otherwise a goal or a throw-in would be that of whoever sets the robot down."""
+    world = bench()
+    world.port("place_ball").put(x_m=ball[0], y_m=ball[1])
+    world.iterate(2)
+    world.port("place_robot").put(robot="cyan1", x_m=robot[0], y_m=robot[1])
+    world.iterate(3)
+    assert [event for report in world.port("match_events").sent for event in report.events] == []
+    assert world.port("match_events").sent[-1].ball_in_field
+    truth = world.port("ground_truth").sent[-1]
+    assert math.dist(robot, (truth.ball_x_m, truth.ball_y_m)) > 0.36
+
+
 @pytest.mark.parametrize("heading_rad", [7.0, -1e6, 1e17])
 def test_robot_that_is_set_down_with_many_turns_can_turn(heading_rad: float) -> None:
     world = bench()
