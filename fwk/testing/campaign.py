@@ -3,6 +3,7 @@
 import fcntl
 import json
 import os
+import re
 from collections import defaultdict
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError, Executor, Future, as_completed
@@ -28,6 +29,9 @@ _hash_in_use = lru_cache(maxsize=None)(hash_of_module)
 _SHOWN, _NAMED = 300, 10  # letters of a failure, and seeds of a cause, that a message shows
 _CODE = "code.json"
 _ABSENT = "there is none"
+_UNKNOWN_TO_JSON = {"Infinity": "1e999", "-Infinity": "-1e999", "NaN": "null"}
+"""What Python writes, and what JSON has for it; `1e999` is beyond all numbers and read as infinity."""
+_TEXT_OR_UNKNOWN = re.compile(r'"(?:[^"\\]|\\.)*"|-?Infinity|NaN')
 _EMPTY: tuple[Any, ...] = ("", {}, [])
 """Values without a measurement."""
 
@@ -255,7 +259,7 @@ def _codes_in(file: Path) -> dict[int, str]:
 
 
 def _text_of(result: Any) -> str:
-    """Returns the text of a result.
+    """Returns the text of a result, in plain JSON.
 
     Raises:
         CampaignError: it has no measurements.
@@ -263,7 +267,8 @@ def _text_of(result: Any) -> str:
     """
     if result in _EMPTY:
         raise CampaignError(f"the evaluation returned {result!r}, which has no measurements")
-    return json.dumps(result)
+    text = json.dumps(result)
+    return _TEXT_OR_UNKNOWN.sub(lambda found: _UNKNOWN_TO_JSON.get(found[0], found[0]), text)
 
 
 def _flaw_of(content: bytes) -> str:

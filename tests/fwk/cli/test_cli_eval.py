@@ -1,6 +1,7 @@
 """`fwk eval`: many seeded runs of a launch file, kept in a folder."""
 
 import json
+import math
 import re
 import subprocess
 import sys
@@ -182,6 +183,21 @@ def test_result_that_cannot_be_kept_fails_its_run(tmp_path: Path, result: Any, c
     with ThreadPoolExecutor(1) as executor, pytest.raises(CampaignError, match=f"seed 1: .*{cause}"):
         list(campaign.play(lambda *_: result, "it", 1.0, [1], executor))
     assert campaign.missing([1]) == [1]
+
+
+def test_results_are_plain_json(tmp_path: Path) -> None:
+    """Programs in other languages read them, too; infinite values stay."""
+    result = {"a": [math.inf, -math.inf, 1.5], "b": math.nan, 'NaN "Infinity': "-Infinity \\"}
+    campaign = Campaign(tmp_path, {"file": "it"})
+    with ThreadPoolExecutor(1) as executor:
+        list(campaign.play(lambda *_: result, "it", 1.0, [1], executor))
+
+    def refuse(constant: str) -> None:
+        raise AssertionError(f"{constant} is no JSON")
+
+    kept = json.loads((tmp_path / "seed-1.json").read_text(), parse_constant=refuse)
+    assert kept == result | {"b": None}
+    assert list(campaign.results([1])) == [kept]
 
 
 def test_results_stay_when_another_run_fails(tmp_path: Path) -> None:
