@@ -15,11 +15,17 @@ def misplaced_robots(restart: Restart, sight: Sight, ends: Ends, field: Field) -
 
 
 def too_few_robots(sight: Sight, cards: Cards, least_robots: int) -> bool:
-    """Returns whether a team has too few robots and may get more; red cards leave none to wait for."""
+    """Returns whether a team has too few robots and may get more; red cards leave none to wait for.
+
+    A team without any robot is waited for if one of them comes back.
+    """
     return any(_waits(team, len(sight.team(team)), cards, least_robots) for team in (Team.CYAN, Team.MAGENTA))
 
 
 def _waits(team: Team, robots: int, cards: Cards, least_robots: int) -> bool:
     away = [robot for robot in cards.sent_off if team_number(robot) is team]
     dismissed = len(cards.dismissed.intersection(away))
-    return 0 < robots < least_robots and (robots + dismissed < least_robots or dismissed < len(away))
+    comes_back = dismissed < len(away)
+    if not robots:
+        return comes_back
+    return robots < least_robots and (robots + dismissed < least_robots or comes_back)

@@ -36,7 +36,10 @@ class Rules(BaseModel):
     shot_s: PositiveFloat = 30.0
     """Time for such a penalty, from the start to the goal (2016)."""
     least_robots: int = Field(default=1, ge=1, le=5)
-    """A set piece waits until each team that plays has so many robots on the field (2016: 2)."""
+    """A set piece waits until each team that plays has so many robots on the field (2016: 2).
+
+    A team whose robots are all beside the field for a while plays; one whose robots all have red cards does not.
+    """
     kick_off_stoppage_s: NonNegativeFloat = 6.0
     """From a goal or the beginning of a half until the kick-off may be taken."""
     stoppage_s: NonNegativeFloat = 3.0

@@ -79,7 +79,10 @@ CASES = {
         "fouls.test_foul_waits_while_its_victims_have_the_ball",
         "fouls.test_advantage_is_over_after_three_seconds",
     ],
-    "start with two robots at least": ["cases.test_match_waits_for_two_robots_of_each_team"],
+    "start with two robots at least": [
+        "cases.test_match_waits_for_two_robots_of_each_team",
+        "cases.test_match_waits_for_a_team_that_is_beside_the_field",
+    ],
     "two halves, change of ends, end": [
         "match.test_teams_change_ends_for_the_second_half",
         "match.test_match_ends_after_two_halves_with_a_draw",
@@ -195,6 +198,21 @@ def test_match_does_not_wait_for_a_robot_with_a_red_card() -> None:
     assert script.whistle.stopped, "one under repair comes back"
     script.wait(3.0)
     assert not script.whistle.stopped
+
+
+@pytest.mark.parametrize("least_robots", [1, 2])
+def test_match_waits_for_a_team_that_is_beside_the_field(least_robots: int) -> None:
+    script = Script(least_robots=least_robots)
+    assert carry_out(script.whistle, Sight(script.ball, robots=script.robots), "park") == ""
+    script.wait(19.0)
+    assert script.whistle.stopped, "all robots come back"
+    script.wait(2.0)
+    assert not script.whistle.stopped
+    for name in ("magenta1", "magenta2", "magenta3"):
+        script.whistle.card(name, Card.RED)
+    script.whistle.interrupt(restarts.after_foul(Point(1.0, 1.0), MAGENTA, script.whistle.rules.field))
+    script.wait(5.0)
+    assert not script.whistle.stopped, "none of magenta comes back"
 
 
 def test_times_are_those_of_the_rule_book() -> None:
