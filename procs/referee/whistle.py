@@ -172,7 +172,7 @@ class Whistle:
 
     def interrupt(self, restart: Restart, reason: Reason | None = None, robot: str = "") -> None:
         """Stops the game for a set piece and has the ball placed."""
-        self._repeats = self._repeats + 1 if restart == self.restart and not self.stopped else 0
+        self._repeats = 0
         self._enter(restart.state, restart.team, stopped=True)
         self.held = self.started = self._starting = False
         self.calls.append(Call(restart.state, restart.team, robot=robot, reason=reason))
@@ -326,7 +326,9 @@ class Whistle:
         if foul is None or self._repeats >= _REPEATS:
             return False
         self._count_foul(foul)
+        repeats = self._repeats + 1
         self.interrupt(self.restart, foul.reason, foul.robot)
+        self._repeats = repeats
         return True
 
     def _give_free_kick(self, foul: Foul) -> None:

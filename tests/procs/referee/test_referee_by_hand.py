@@ -171,3 +171,17 @@ def test_stop_takes_back_a_start_that_waits() -> None:
         assert carry_out(script.whistle, sight, name, team) == ""
     script.wait(1.0)
     assert script.state == (State.CORNER_KICK, CYAN, True)
+
+
+def test_repeats_by_hand_use_up_no_repeats_after_breaches() -> None:
+    """A breach has a set piece repeated twice at most; what a person repeats does not count."""
+    script = Script(penalties=2)
+    ask(script, "penalties")
+    for _ in range(3):
+        ask(script, "start")
+        assert not script.whistle.stopped
+        ask(script, "penalty", "cyan")
+    ask(script, "start")
+    script.touch("magenta1")
+    assert script.state == (State.PENALTY, CYAN, True)
+    assert script.reasons[-1] == "touch before the set piece was taken"
