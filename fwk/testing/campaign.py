@@ -103,7 +103,7 @@ class Campaign:
         The digest `code` of the modules is kept with each result.
 
         Raises:
-            CampaignError: the folder holds another campaign.
+            CampaignError: the folder holds results of another campaign, or another is played into it.
             FolderError: what the folder says about its campaign is damaged, or cannot be read or written.
             OSError: there is no folder, and none can be made.
         """
@@ -120,8 +120,16 @@ class Campaign:
         elif _flaw_of(old) and old != text.encode():
             cure = "remove it if the results beside it are of this launch file and its settings"
             raise FolderError(f"{note} is damaged: {_flaw_of(old)}; {cure}, or choose another folder")
-        elif json.loads(old) != json.loads(text):
+        elif json.loads(old) != json.loads(text) and not self._began_anew(note, text):
             raise CampaignError(f"{folder} holds another campaign: {old.decode()}; choose another folder")
+
+    def _began_anew(self, note: Path, text: str) -> bool:
+        """Begins this campaign in the place of another that has no result and is not played; returns whether it did."""
+        with suppress(CampaignError), self.alone():
+            if not any(self._folder.glob("seed-*.json")):
+                _write(note, text)
+                return True
+        return False
 
     def missing(self, seeds: Iterable[int]) -> list[int]:
         """Returns the seeds without a result, or with a damaged one.

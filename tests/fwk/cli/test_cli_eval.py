@@ -86,6 +86,17 @@ def test_folder_of_another_campaign_is_refused(launch: Path) -> None:
     assert "holds another campaign" in said
 
 
+def test_folder_without_results_takes_another_campaign(launch: Path) -> None:
+    """The only run of a mistaken command failed; the right command needs no other folder."""
+    assert evaluated(str(launch), "--seeds", "13", "--jobs", "1", "--time", "0.001")[0] == 1
+    with Campaign(launch.parent / "other", {"file": "another"}).alone():
+        code, _, said = evaluated(str(launch), "--seeds", "1", "--jobs", "1", "--out", "other")
+        assert (code, "holds another campaign" in said) == (1, True), "it is being played"
+    assert evaluated(str(launch), "--seeds", "1", "--jobs", "1", "--time", "3")[:2] == (0, "1\n")
+    note = json.loads((launch.parent / "eval-it" / "campaign.json").read_text())
+    assert note["time_s"] == 3.0
+
+
 def test_changed_launch_file_is_another_campaign(launch: Path) -> None:
     assert evaluated(str(launch), "--seeds", "1", "--jobs", "1")[0] == 0
     launch.write_text("# The same system.\n" + LAUNCH)
