@@ -7,7 +7,7 @@ from typing import NamedTuple
 from lcmtypes.soccer import game_state_t
 from procs.behaviour.view import Frame
 from procs.model.field import Point
-from procs.model.game_states import State
+from procs.model.game_states import State, state_of
 from procs.model.geometry import plausible
 from procs.model.teams import Ends, Team
 
@@ -44,9 +44,6 @@ class Game(NamedTuple):
         return self.state in (State.FROZEN, State.HALF_TIME)
 
 
-_STATES = {int(state): state for state in State}
-
-
 def frame_of(message: game_state_t, team: Team) -> Frame:
     """Returns the attack frame of a team, which turns when the teams change ends."""
     ends = Ends(math.copysign(1.0, message.cyan_side)) if message.cyan_side else Ends()
@@ -60,5 +57,4 @@ def game_of(message: game_state_t, team: Team, frame: Frame) -> Game:
         whose = Whose.OURS if message.state_team == team else Whose.THEIRS
     x_m, y_m = message.ball_x_m, message.ball_y_m
     spot = frame.point(x_m, y_m) if plausible(x_m, y_m) else Point(0.0, 0.0)
-    state = _STATES.get(message.state, State.FROZEN)
-    return Game(state, message.stopped, whose, spot, tuple(message.sent_off), message.decisions)
+    return Game(state_of(message.state), message.stopped, whose, spot, tuple(message.sent_off), message.decisions)

@@ -23,4 +23,10 @@ class State(IntEnum):
         return _WORDS.get(self, self.name.lower().replace("_", " "))
 
 
+def state_of(number: int) -> State:
+    """Returns the state of a message; FROZEN, in which no robot moves, for a number that is none."""
+    return _STATES.get(number, State.FROZEN)
+
+
+_STATES = {int(state): state for state in State}
 _WORDS = {State.KICK_OFF: "kick-off", State.DROP_BALL: "dropped ball", State.THROW_IN: "throw-in"}

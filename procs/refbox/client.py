@@ -1,26 +1,27 @@
-"""Obeys a RefBox: hands its commands on to the referee."""
+"""Base station of a team: hands the commands of a RefBox on to the referee, and reports the team's world state."""
 
-import errno
-import os
-import socket
+from typing import Literal
 
 from pydantic import Field, PositiveFloat
 
 from fwk import Call as Sent
-from fwk import Calls, Clock, Component, Config, Logger, channel
-from lcmtypes.soccer import referee_command_t
-from procs.model.robot import PLAYERS, Players
-from procs.refbox.protocol import PORT, Command, Host, ProtocolError, Stream, decode
+from fwk import Calls, Clock, Component, Config, Each, Logger, Reads, channel
+from lcmtypes.soccer import game_state_t, referee_command_t, team_message_t, world_model_t
+from procs.model.game_states import State, state_of
+from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel, team_of_player
+from procs.model.teams import Ends, team_number
+from procs.refbox.connection import Connection
+from procs.refbox.protocol import PORT, Command, Host, ProtocolError, decode
+from procs.refbox.world_state import best_belief, encode, intention_of, world_state
 
 _IGNORED = frozenset({"WELCOME", "IS_ALIVE", "REPAIR_END", "TESTMODE_ON", "TESTMODE_OFF"})
 _OTHER_NAMES = {"GAMEOVER": "END_GAME", "GAME_OVER": "END_GAME"}
 _TIMEOUT_S = 1.0  # within which the referee answers a command
-_HEARD = 65_536  # bytes taken from the RefBox in a tick
-_UNDER_WAY = frozenset({errno.EINPROGRESS, errno.EALREADY, errno.EWOULDBLOCK, errno.EINTR})
+_SILENT_S = 2.0  # a robot that has told nothing for so long is left out of the report
 
 
 class ClientConfig(Config):
-    """Address of the RefBox."""
+    """Address of the RefBox, and what is reported to it."""
 
     host: Host = "127.0.0.1"
     """Name or address of the RefBox."""
@@ -34,10 +35,24 @@ class ClientConfig(Config):
     """Multicast address that names each team."""
     players: Players = dict(PLAYERS)
     """Team and number of each robot."""
+    robot: RobotModel = ROBOT
+    """Size of the robots, also of opponents."""
+    obeys: bool = True
+    """False: the commands of the RefBox are left to another base station of the run."""
+    team: Literal["cyan", "magenta"] = "cyan"
+    """Team whose world state is reported."""
+    team_name: str = ""
+    """Name of the team in its reports; empty: `team`."""
+    report_s: float = Field(0.1, ge=0.0, le=60.0)
+    """Time from one report to the next; 0: no reports."""
 
 
 class RefBoxClient(Component):
-    """Leads the match as an official RefBox wants; the referee's setting `automatic` should be false."""
+    """Leads the match as an official RefBox wants; the referee's setting `automatic` should be false.
+
+    The RefBox is told where the robots of the team are, what they are about to do, and what they know of ball and
+    opponents.
+    """
 
     stage = "sensor_acquire"
     reaches_outside = True
@@ -46,28 +61,29 @@ class RefBoxClient(Component):
     clock: Clock
     log: Logger
     referee_command: Calls[referee_command_t] = channel("world/referee_command")
+    game_state: Reads[game_state_t] = channel("world/game_state")
+    messages: Each[Reads[team_message_t]] = channel("*/team_message")
+    beliefs: Each[Reads[world_model_t]] = channel("*/world_model")
 
     def init(self) -> None:
-        self._connection: socket.socket | None = None
-        self._dialling: socket.socket | None = None
-        self._dialled_us = 0
-        self._stream = Stream()
-        self._again_us = 0
-        self._reason = ""  # why the RefBox cannot be reached
+        self._connection = Connection(self.clock, self.log)
         self._sent: list[Sent] = []
+        self._reported_us = 0
 
     def loop(self) -> None:
         finished = [call for call in self._sent if call.finished]
         self._sent = [call for call in self._sent if not call.finished]
         self._warn("the referee does not obey", [call.reason for call in finished if not call.done])
-        if self._connection is None and self.clock.now_us >= self._again_us:
-            self._connect()
-        self._warn("RefBox", [mistake for message in self._messages() if (mistake := self._hand_on(message))])
+        config, connection = self.config, self._connection
+        connection.attend(config.host, config.port, config.retry_s, config.connect_s)
+        messages = connection.messages(config.retry_s)
+        self._warn("RefBox", [mistake for message in messages if (mistake := self._hand_on(message))])
+        if config.report_s and connection.ready and self.clock.since_s(self._reported_us) >= config.report_s:
+            self._report()
 
     def finalize(self) -> None:
         """Leaves the RefBox."""
-        for each in filter(None, (self._connection, self._dialling)):
-            each.close()
+        self._connection.close()
 
     def _warn(self, what: str, reasons: list[str]) -> None:
         """Logs one line, however many commands a RefBox sends in a tick."""
@@ -75,58 +91,13 @@ class RefBoxClient(Component):
             more = f" (and {len(reasons) - 1} more)" if len(reasons) > 1 else ""
             self.log.warning(f"{what}: {reasons[0]}{more}")
 
-    def _connect(self) -> None:
-        """Begins to connect, or goes on, without waiting for the RefBox."""
-        place = (self.config.host, self.config.port)
-        if self._dialling is None:
-            self._dialling = socket.socket(socket.AF_INET6 if ":" in place[0] else socket.AF_INET)
-            self._dialling.setblocking(False)
-            self._dialled_us = self.clock.now_us
-        try:
-            code = self._dialling.connect_ex(place)
-            reason = os.strerror(code)
-        except OSError as error:  # no such host
-            code, reason = errno.EHOSTUNREACH, str(error)
-        if code in _UNDER_WAY:
-            if self.clock.since_s(self._dialled_us) < self.config.connect_s:
-                return
-            reason = f"no answer for {self.config.connect_s:g} s"
-        dialled, self._dialling = self._dialling, None
-        if code not in (0, errno.EISCONN):
-            dialled.close()
-            self._again_us = self.clock.now_us + round(self.config.retry_s * 1e6)
-            if reason != self._reason:
-                again = f"it is tried again every {self.config.retry_s:g} s"
-                self.log.warning(f"no RefBox at {place[0]}:{place[1]}: {reason}; {again}")
-            self._reason = reason
-            return
-        self._connection, self._stream, self._reason = dialled, Stream(), ""
-        self.log.info(f"connected with the RefBox at {place[0]}:{place[1]}")
-
-    def _messages(self) -> list[bytes]:
-        if self._connection is None:
-            return []
-        try:
-            data = self._connection.recv(_HEARD)
-            if data:
-                return list(self._stream.feed(data))
-            reason = "it closed the connection"
-        except BlockingIOError:
-            return []
-        except (OSError, ProtocolError) as error:
-            reason = str(error)
-        self.log.warning(f"lost the RefBox: {reason}")
-        self._connection.close()
-        self._connection, self._again_us = None, self.clock.now_us + round(self.config.retry_s * 1e6)
-        return []
-
     def _hand_on(self, message: bytes) -> str:
         """Hands a command on; returns why the message is no command, or an empty text."""
         try:
             command = decode(message, self.config.addresses)
         except ProtocolError as error:
             return str(error)
-        if command.name not in _IGNORED:
+        if self.config.obeys and command.name not in _IGNORED:
             self._call(command)
         return ""
 
@@ -142,3 +113,31 @@ class RefBoxClient(Component):
         meant = (command.team, command.robot)
         found = (name for name, player in self.config.players.items() if (player.team, player.number) == meant)
         return next(found, f"{command.team}{command.robot}")
+
+    def _report(self) -> None:
+        """Sends the team's world state, if a robot has told something lately."""
+        ages_s = {
+            robot: self.clock.since_s(port.header.time_us)
+            for robot, port in self.messages.items()
+            if port.has_value and self._plays(robot)
+        }
+        heard = [robot for robot, age_s in ages_s.items() if age_s <= _SILENT_S]
+        if not heard:
+            return
+        self._reported_us = self.clock.now_us
+        beliefs = [self.beliefs[robot].value for robot in heard if robot in self.beliefs]
+        belief, game = best_belief(beliefs), self.game_state.value
+        report = world_state(
+            self.config.team_name or self.config.team,
+            intention_of(belief, heard) if game.state == State.PLAY else state_of(game.state).words,
+            [self.messages[robot].value for robot in heard],
+            belief,
+            -Ends(game.cyan_side or Ends().cyan_side).side_of(team_number(self.config.team)),
+            self.config.robot.radius_m,
+            min(ages_s[robot] for robot in heard),
+        )
+        self._connection.send(encode(report), self.config.retry_s)
+
+    def _plays(self, robot: str) -> bool:
+        """Returns whether a robot belongs to the team."""
+        return team_of_player(robot, self.config.players) == self.config.team

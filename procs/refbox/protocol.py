@@ -1,7 +1,8 @@
 """Protocol of the RefBox of the middle size league: JSON objects over TCP, each followed by a NUL byte.
 
 `{"command": "KICKOFF", "targetTeam": "224.16.32.1"}`; a team is named by its multicast address, both teams by an empty
-text. `SUBSTITUTION` and `IS_ALIVE` have the number of a robot as `robotID`; cards and `REPAIR` need none.
+text. `SUBSTITUTION` and `IS_ALIVE` have the number of a robot as `robotID`; cards and `REPAIR` need none. Base stations
+answer with world states (`world_state.py`).
 """
 
 import json
@@ -46,16 +47,25 @@ def encode(command: Command, addresses: Mapping[str, str]) -> bytes:
     return json.dumps(message).encode() + b"\0"
 
 
+def parse(data: bytes) -> Any:
+    """Returns the JSON value in a message without its NUL.
+
+    Raises:
+        ProtocolError: it is not JSON.
+    """
+    try:
+        return json.loads(data)
+    except (ValueError, RecursionError) as error:  # lists may be nested deeper than Python's stack
+        raise ProtocolError(f"{data[:_QUOTED]!r} is not JSON") from error
+
+
 def decode(data: bytes, addresses: Mapping[str, str]) -> Command:
     """Returns the command in a message without its NUL.
 
     Raises:
         ProtocolError: it is not a command, or it is for a team that does not play.
     """
-    try:
-        message = json.loads(data)
-    except (ValueError, RecursionError) as error:  # lists may be nested deeper than Python's stack
-        raise ProtocolError(f"{data[:_QUOTED]!r} is not JSON") from error
+    message = parse(data)
     if not isinstance(message, dict) or not isinstance(message.get("command"), str):
         raise ProtocolError(f"{data[:_QUOTED]!r} has no command")
     name, address, robot = message["command"].strip(), message.get("targetTeam", ""), message.get("robotID", 0)

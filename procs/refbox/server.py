@@ -1,4 +1,4 @@
-"""Serves the referee's decisions to base stations, as the RefBox of the middle size league does."""
+"""Serves the referee's decisions to base stations, and hears their reports, as the RefBox of the league does."""
 
 import selectors
 import socket
@@ -10,9 +10,9 @@ from lcmtypes.soccer import game_state_t, match_history_t
 from procs.model.robot import PLAYERS, Players
 from procs.refbox.news import news
 from procs.refbox.protocol import PORT, Command, Host, encode
+from procs.refbox.station import Station
 
 _BACKLOG = 16  # base stations that may wait to be let in
-_HEARD = 65_536  # bytes taken from a base station in a tick, and dropped
 
 
 class ServerConfig(Config):
@@ -35,8 +35,8 @@ class RefBoxServer(Component):
 
     First come the half, the goals, the cards, the robots off the field, and the break or the set piece at hand.
 
-    Messages of base stations are dropped. A base station that leaves, or does not read what it is sent, is cut off: no
-    base station can hold the game up.
+    The reports of base stations are checked and counted. A base station that leaves, or does not read what it is sent,
+    is cut off: no base station can hold the game up.
     """
 
     stage = "post_loop"
@@ -54,7 +54,7 @@ class RefBoxServer(Component):
             OSError: the address cannot be used.
         """
         self._before: game_state_t | None = None
-        self._stations: list[socket.socket] = []
+        self._stations: list[Station] = []
         family = socket.AF_INET6 if ":" in self.config.host else socket.AF_INET
         self._listening = socket.create_server((self.config.host, self.config.port), family=family, backlog=_BACKLOG)
         self._listening.setblocking(False)
@@ -77,51 +77,44 @@ class RefBoxServer(Component):
     def finalize(self) -> None:
         """Closes all connections."""
         self._arrivals.close()
-        for each in (*self._stations, self._listening):
-            each.close()
+        for station in self._stations:
+            station.close()
+        self._listening.close()
 
     def _hear(self) -> None:
-        """Drops the messages of base stations, and cuts off those that have left."""
+        """Takes the reports of base stations, and cuts off those that have left."""
         for station in list(self._stations):
-            try:
-                left = not station.recv(_HEARD)
-            except BlockingIOError:
-                continue
-            except OSError:
-                left = True
-            if left:
-                self._cut_off(station, "base station left")
+            if not station.hear():
+                self._cut_off(station, "left")
 
-    def _admit(self) -> list[socket.socket]:
-        newcomers: list[socket.socket] = []
+    def _admit(self) -> list[Station]:
+        newcomers: list[Station] = []
         for _ in range(_BACKLOG):
             if not self._arrivals.select(0):
                 break
             try:
-                station, address = self._listening.accept()
+                connection, address = self._listening.accept()
             except OSError:  # it has left before it was let in, or the process has no descriptor left
                 break
             if len(self._stations) + len(newcomers) >= self.config.stations:
                 self.log.warning(f"base station {address[0]} is turned away: {self.config.stations} are connected")
-                station.close()
+                connection.close()
                 continue
-            station.setblocking(False)
-            self.log.info(f"base station {address[0]}:{address[1]} is connected")
+            connection.setblocking(False)
+            station = Station(connection, f"{address[0]}:{address[1]}", self.log)
+            self.log.info(f"base station {station.name} is connected")
             newcomers.append(station)
         self._stations += newcomers
         return newcomers
 
-    def _cut_off(self, station: socket.socket, why: str) -> None:
-        self.log.info(why)
+    def _cut_off(self, station: Station, why: str) -> None:
+        said = f"{station.reports} world states reported, {station.refused} messages refused"
+        self.log.info(f"base station {station.name} {why}; {said}")
         self._stations.remove(station)
         station.close()
 
-    def _send(self, commands: list[Command], stations: list[socket.socket]) -> None:
+    def _send(self, commands: list[Command], stations: list[Station]) -> None:
         data = b"".join(encode(command, self.config.addresses) for command in commands)
         for station in stations if data else []:
-            try:
-                whole = station.send(data) == len(data)
-            except OSError:
-                whole = False
-            if not whole:
-                self._cut_off(station, "base station left, or did not read what it was sent")
+            if not station.send(data):
+                self._cut_off(station, "left, or did not read what it was sent")

@@ -1,0 +1,117 @@
+"""Connection of a base station with a RefBox: dials again when it is lost, and never waits."""
+
+import errno
+import os
+import socket
+
+from fwk import Clock, Logger
+from procs.refbox.protocol import ProtocolError, Stream
+
+_HEARD = 65_536  # bytes taken from the RefBox in a tick
+_UNDER_WAY = frozenset({errno.EINPROGRESS, errno.EALREADY, errno.EWOULDBLOCK, errno.EINTR})
+
+
+class Connection:
+    """A TCP connection that is there or is being made."""
+
+    def __init__(self, clock: Clock, log: Logger) -> None:
+        self._clock = clock
+        self._log = log
+        self._socket: socket.socket | None = None
+        self._dialling: socket.socket | None = None
+        self._dialled_us = 0
+        self._stream = Stream()
+        self._again_us = 0
+        self._reason = ""  # why the RefBox cannot be reached
+        self._unsent = b""
+
+    @property
+    def ready(self) -> bool:
+        """True if the RefBox is there and has taken all that was sent so far."""
+        return self._socket is not None and not self._unsent
+
+    def attend(self, host: str, port: int, retry_s: float, connect_s: float) -> None:
+        """Dials if there is no connection, or sends what is left of a message.
+
+        Args:
+            host: name or address of the RefBox.
+            port: its TCP port.
+            retry_s: time after which a RefBox that cannot be reached is tried again.
+            connect_s: time after which a RefBox that does not answer is not there.
+        """
+        if self._socket is not None:
+            self._send_rest(retry_s)
+        elif self._clock.now_us >= self._again_us:
+            self._dial(host, port, retry_s, connect_s)
+
+    def messages(self, retry_s: float) -> list[bytes]:
+        """Returns the messages that have arrived, without their NUL."""
+        if self._socket is None:
+            return []
+        try:
+            data = self._socket.recv(_HEARD)
+            if data:
+                return list(self._stream.feed(data))
+            reason = "it closed the connection"
+        except BlockingIOError:
+            return []
+        except (OSError, ProtocolError) as error:
+            reason = str(error)
+        self._lose(reason, retry_s)
+        return []
+
+    def send(self, data: bytes, retry_s: float) -> None:
+        """Sends a message as fast as the RefBox reads; it has to be `ready`."""
+        self._unsent = data
+        self._send_rest(retry_s)
+
+    def close(self) -> None:
+        """Leaves the RefBox."""
+        for each in filter(None, (self._socket, self._dialling)):
+            each.close()
+
+    def _dial(self, host: str, port: int, retry_s: float, connect_s: float) -> None:
+        """Begins to connect, or goes on, without waiting for the RefBox."""
+        if self._dialling is None:
+            self._dialling = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
+            self._dialling.setblocking(False)
+            self._dialled_us = self._clock.now_us
+        try:
+            code = self._dialling.connect_ex((host, port))
+            reason = os.strerror(code)
+        except OSError as error:  # no such host
+            code, reason = errno.EHOSTUNREACH, str(error)
+        if code in _UNDER_WAY:
+            if self._clock.since_s(self._dialled_us) < connect_s:
+                return
+            reason = f"no answer for {connect_s:g} s"
+        dialled, self._dialling = self._dialling, None
+        if code not in (0, errno.EISCONN):
+            dialled.close()
+            self._try_later(retry_s)
+            if reason != self._reason:
+                self._log.warning(f"no RefBox at {host}:{port}: {reason}; it is tried again every {retry_s:g} s")
+            self._reason = reason
+            return
+        self._socket, self._stream, self._reason, self._unsent = dialled, Stream(), "", b""
+        self._log.info(f"connected with the RefBox at {host}:{port}")
+
+    def _send_rest(self, retry_s: float) -> None:
+        if self._socket is None or not self._unsent:
+            return
+        try:
+            self._unsent = self._unsent[self._socket.send(self._unsent) :]
+        except BlockingIOError:
+            pass
+        except OSError as error:
+            self._lose(str(error), retry_s)
+
+    def _lose(self, reason: str, retry_s: float) -> None:
+        self._log.warning(f"lost the RefBox: {reason}")
+        if self._socket is not None:
+            self._socket.close()
+        self._socket = None
+        self._try_later(retry_s)
+
+    def _try_later(self, retry_s: float) -> None:
+        self._again_us = self._clock.now_us + round(retry_s * 1e6)

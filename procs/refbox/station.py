@@ -1,0 +1,68 @@
+"""A base station that is connected to the RefBox of this run: what it is sent, and the world states that it reports."""
+
+import socket
+
+from fwk import Logger
+from procs.refbox.protocol import ProtocolError, Stream
+from procs.refbox.world_state import check
+
+_HEARD = 65_536  # bytes taken from a base station in a tick
+
+
+class Station:
+    """One base station; no call waits for it."""
+
+    def __init__(self, connection: socket.socket, name: str, log: Logger) -> None:
+        """`name` is its address."""
+        self.name = name
+        self.reports = 0
+        """Number of world states that it has reported."""
+        self.refused = 0
+        """Number of its messages that were no world states."""
+        self._connection = connection
+        self._log = log
+        self._stream = Stream()
+
+    def hear(self) -> bool:
+        """Takes what has arrived; returns False if the base station has left."""
+        try:
+            data = self._connection.recv(_HEARD)
+        except BlockingIOError:
+            return True
+        except OSError:
+            return False
+        try:
+            for message in self._stream.feed(data):
+                self._take(message)
+        except ProtocolError as error:
+            self._stream = Stream()
+            self._refuse(error)
+        return bool(data)
+
+    def send(self, data: bytes) -> bool:
+        """Sends bytes; returns False if the base station has left or does not read what it is sent."""
+        try:
+            return self._connection.send(data) == len(data)
+        except OSError:
+            return False
+
+    def close(self) -> None:
+        """Cuts the base station off."""
+        self._connection.close()
+
+    def _take(self, message: bytes) -> None:
+        try:
+            report = check(message)
+        except ProtocolError as error:
+            self._refuse(error)
+            return
+        self.reports += 1
+        if self.reports == 1:
+            seen = ", ".join(f"{len(report[each])} {each}" for each in ("robots", "balls", "obstacles"))
+            self._log.info(f"base station {self.name} reports the world state of {report['teamName'][:40]!r}: {seen}")
+
+    def _refuse(self, error: ProtocolError) -> None:
+        """Counts a message; logs the first."""
+        self.refused += 1
+        if self.refused == 1:
+            self._log.warning(f"base station {self.name}: {error}; refused, as further messages of this kind will be")
