@@ -37,6 +37,8 @@ class AgentConfig(Config):
     """Size and friction of the ball."""
     strategy: Literal["team", "greedy"] = "team"
     """`team`: roles, passes and formations; `greedy`: the simple opponent, which chases the ball."""
+    use_roles: bool = True
+    """False: in play every field player goes for the ball, to show what roles are worth."""
     new_target_m: float = 0.05
     """A target that moved further than this makes a new command."""
     new_heading_rad: float = 0.05
@@ -97,6 +99,8 @@ class Agent(Component):
             return greedy.decide(view, game, held, field)
         idle = roles.Job(self.role.value.role or roles.DEFENDER, view.own.place)
         job = roles.assign(view, field).get(self._robot, idle)
+        if not self.config.use_roles and game.free_play and job.role != roles.GOALKEEPER:
+            job = roles.Job(roles.ATTACKER, view.ball.place)
         order = self._tactics.decide(view, game, job, held, self.clock.iteration_s)
         return roles.PASSER if self._tactics.barred else job.role, order
 

@@ -50,6 +50,22 @@ def test_both_teams_decide_alike(robot: str, sign: float) -> None:
     assert newest(bench, "role").role == "attacker"
 
 
+def role_of_the_farther_robot(use_roles: bool, state: int) -> str:
+    """Returns the role of a field player whose mate is nearer to the ball."""
+    bench, mates = Bench(Agent, "cyan3/agent", use_roles=use_roles), [mate_estimate_t() for _ in range(2)]
+    mates[0].name, mates[0].x_m, mates[1].name, mates[1].x_m = "cyan1", -10.0, "cyan2", 2.0
+    bench.port("world_model").put(localized=True, x_m=-3.0, ball=seen_ball(3.0, 0.0), mates=mates)
+    bench.port("game_state").put(state=state, state_team=game_state_t.TEAM_CYAN, ball_x_m=3.0)
+    bench.iterate()
+    return str(newest(bench, "role").role)
+
+
+def test_without_roles_every_field_player_goes_for_the_ball() -> None:
+    assert role_of_the_farther_robot(True, game_state_t.PLAY) != "attacker"
+    assert role_of_the_farther_robot(False, game_state_t.PLAY) == "attacker"
+    assert role_of_the_farther_robot(False, game_state_t.FREE_KICK) != "attacker", "one robot takes a set piece"
+
+
 @pytest.fixture
 def agent() -> Bench:
     return Bench(Agent, "cyan2/agent")
