@@ -9,13 +9,16 @@ from lcmtypes.soccer import ball_candidate_t, ball_percept_t
 from procs.model.algebra import Floats
 from procs.simulation.percept_errors import PerceptErrors
 from procs.simulation.sight import blurred, claimed, shaken
-from procs.vision.ball_finder import AREA_PX, IN_THE_AIR, most_fit
+from procs.vision.ball_finder import IN_THE_AIR, area_share, most_fit, seems_whole
 from procs.vision.mirror import Mirror
 from procs.vision.uncertainty import sphere_covariance
 
 LEAST_VISIBLE = 0.4
 """Least visible part of a ball that is found; ER-Force's threshold, too."""
 _LEAST_AREA = 1e-6
+_VISIBLE = (0.37, 0.50, 0.63, 0.75, 0.86, 0.95, 1.0)
+_SPREADS = (1.45, 1.29, 1.18, 1.11, 1.05, 1.025, 1.015)
+"""What is left of a disc behind a straight edge spreads so much further in a picture than a disc of its area."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +61,11 @@ class BallSight:
                 return self._blurred(appears_m, min(fit, 1.0 / fit), shake_px, noise)
         if not self.mirror.shows_all(column, row, radius_px):
             return ball_percept_t()
-        return self._in_the_air(at_m, height_m, area, radius_px, shake_px, noise)
+        spread = float(np.interp(visible, _VISIBLE, _SPREADS))
+        if not seems_whole(spread, radius_px):
+            return ball_percept_t()
+        share = area_share(spread, radius_px)
+        return self._in_the_air(at_m, height_m, area, share, shake_px, noise)
 
     def on_ground(self, x_m: float, y_m: float, confidence: float) -> ball_percept_t:
         """Returns the percept of a ball that is found at a place of the robot frame, or of none."""
@@ -84,7 +91,7 @@ class BallSight:
         at_m: Floats,
         height_m: float,
         area: float,
-        radius_px: float,
+        stated_share: float,
         shake_px: tuple[float, float],
         noise: list[float],
     ) -> ball_percept_t:
@@ -106,9 +113,7 @@ class BallSight:
             centre_m = self.mirror.height_m - further * below_m
             percept.z_m = max(0.0, centre_m - self.radius_m)
             place_m = (percept.x_m, percept.y_m, centre_m)
-            percept.covariance_m2 = sphere_covariance(
-                self.mirror, place_m, AREA_PX / radius_px, self.stated_px
-            ).tolist()
+            percept.covariance_m2 = sphere_covariance(self.mirror, place_m, stated_share, self.stated_px).tolist()
         return percept
 
 

@@ -221,6 +221,13 @@ def test_nothing_is_seen_beyond_what_the_mirror_shows() -> None:
     assert 3.5 < max(np.hypot(lines.x_m, lines.y_m)) < 4.3
 
 
+def test_ball_in_the_air_that_a_robot_hides_in_part_is_not_seen() -> None:
+    ahead = (OWN[0] + 3.0, OWN[1])
+    for aside_m, visible in ((0.6, True), (0.2, False)):
+        percept = look(bench(realism="none"), truth(ahead, (OWN[0] + 1.5, OWN[1] + aside_m), ball_z_m=0.3))
+        assert percept.visible is visible
+
+
 def test_ball_above_robots_is_not_hidden() -> None:
     ahead, between = (OWN[0] + 3.0, OWN[1]), (OWN[0] + 1.5, OWN[1])
     assert look(bench(realism="none"), truth(ahead, between, ball_z_m=0.61)).visible

@@ -153,6 +153,20 @@ def test_ball_in_the_air_is_found_at_its_height(distance_m: float, height_m: flo
     assert 0.3 < np.mean(normed) / 2 < 1.8
 
 
+def test_size_of_a_half_hidden_ball_in_the_air_is_not_trusted() -> None:
+    rng, normed = np.random.default_rng(4), []
+    for _ in range(80):
+        distance_m, share, aside_m = rng.uniform(1.5, 4.0), rng.uniform(0.4, 0.8), rng.uniform(-0.4, 0.4)
+        robot = (share * distance_m - 1.0, aside_m + 2.0, CYAN)
+        ball_m = (distance_m - 1.0, 2.0, 0.36)
+        ball = FINDER.find(picture(Scene(Pose(-1.0, 2.0, 0.0), [robot], ball_m), rng, SHAKE_PX))
+        if ball is not None and ball.z_m > 0.0:
+            error = np.array((ball.x_m - distance_m, ball.y_m))
+            normed.append(error @ np.linalg.solve(ball.covariance_m2, error))
+    assert len(normed) > 20
+    assert np.mean(normed) / 2 < 2.0  # several dozens if its size were taken for that of a whole ball
+
+
 def test_ball_that_the_pictures_edge_cuts_is_not_seen() -> None:
     ball_m = (0.0, 2.0, 0.81)  # its centre is above the horizon, its upper half above the mirror's edge
     assert FINDER.find(renderer().render(Scene(Pose(-1.0, 2.0, 0.0), [], ball_m))) is None
