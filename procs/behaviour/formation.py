@@ -19,7 +19,7 @@ _LAYOFF_M, _LAYOFF_RAD = 2.4, (0.55, 0.8, 1.1, 1.5)
 _AREA_M = 0.35
 """Robots without the ball keep that distance from the penalty areas."""
 _APART_M = 1.0
-"""Least distance of two robots at a set piece."""
+"""Least distance of two places."""
 _TURNS_RAD = [sign * 0.15 * step for step in range(1, 21) for sign in (1, -1)]
 _LENGTH_M, _WIDTH_M = 22.0, 14.0
 """Field for which the distances of formations are; they become larger or smaller with the field."""
@@ -64,6 +64,8 @@ def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
         aside_m = shooter_aside_m if ball.x_m > 3.0 * along else 5.0 * across
         y_m = clamp(ball.y_m - flank * (3.5 * across), -aside_m, aside_m)
         sweeper = Point(min(ball.x_m + 1.0 * along, shooter_m), y_m)
+        if math.dist(sweeper, supporter) < _APART_M:  # the ball is in the corner: both would wait for the same pass
+            sweeper = Point(sweeper.x_m, supporter.y_m - flank * _APART_M)
     aside_m = 6.0 * across
     y_m = clamp(ball.y_m - flank * (2.0 * across), -aside_m, aside_m)
     spare = Point(clamp(ball.x_m - 3.0 * along, -back_m, 2.0 * along), y_m)

@@ -102,6 +102,13 @@ def test_six_robots_all_have_jobs() -> None:
     assert set(assign(view(six[0], ball(0.0, 0.0), six[1:]), FIELD)) == {mate.name for mate in six}
 
 
+@pytest.mark.parametrize("ours", [True, False])
+def test_places_of_the_formation_are_apart_for_any_ball(ours: bool) -> None:
+    for x_m, y_m in itertools.product(range(-11, 12), range(-7, 8)):
+        found = formation.places(Point(x_m, y_m), ours, math.copysign(1.0, -y_m), FIELD)
+        assert min(math.dist(*pair) for pair in itertools.combinations(found, 2)) > 0.75, (x_m, y_m)
+
+
 @pytest.mark.parametrize("state", [State.KICK_OFF, State.THROW_IN, State.FREE_KICK, State.CORNER_KICK, State.DROP_BALL])
 @pytest.mark.parametrize("whose", Whose)
 @pytest.mark.parametrize("spot", [Point(0.0, 0.0), Point(10.8, 6.8), Point(-10.8, -6.8), Point(-3.0, 6.9)])
