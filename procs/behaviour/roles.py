@@ -50,7 +50,7 @@ def assign(view: View, field: Field) -> dict[str, Job]:
     if not team:
         return jobs
     course = ballistics.Course(view.ball, view.bodies)
-    times_s = {robot.name: _time_to_ball_s(robot, view.ball, course) for robot in team}
+    times_s = {robot.name: time_to_ball_s(robot, view.ball, course) for robot in team}
     free = [robot for robot in team if robot.role != PASSER] or team
     attacker = receiver(team, view) or min(
         free, key=lambda robot: (times_s[robot.name] - _STAY_S * (robot.role == ATTACKER), robot.name)
@@ -81,7 +81,8 @@ def receiver(team: Sequence[Robot], view: View) -> Robot | None:
     return None
 
 
-def _time_to_ball_s(robot: Robot, ball: Ball, course: ballistics.Course) -> float:
+def time_to_ball_s(robot: Robot, ball: Ball, course: ballistics.Course) -> float:
+    """Returns the time in which a robot meets the ball; 0 for one that has it."""
     # A dribbling robot takes the ball along; a mate ahead of the ball would seem to meet it sooner.
     return (
         0.0 if math.dist(robot.place, ball.place) < _HAS_BALL_M else course.meet(robot.place, robot.velocity_m_s).time_s

@@ -96,7 +96,7 @@ class Tactics:
 
     def _still_barred_s(self, view: View, game: Game, holds_ball: bool) -> float:
         """Returns for how long the robot leaves the ball alone after a set piece that it has taken."""
-        if game.stopped or not view.mates or holds_ball:
+        if game.stopped or not (view.mates or view.silent_mates) or holds_ball:
             return 0.0
         if self._taking and self._last.skill in ("pass", "shoot", "lob", "push", "clear"):
             return _BARRED_S  # it held the ball in the last tick and does not any more
@@ -199,7 +199,7 @@ class Tactics:
     def _play_ball(self, view: View) -> Order:
         if self._taking and self._penalty:
             return self._play.take_penalty(view)
-        if self._taking and view.mates:
+        if self._taking and (view.mates or view.silent_mates):
             order = self._play.take_set_piece(view, self._receiver)
             self._receiver = order.receiver or self._receiver
             return self._agreed(order)
