@@ -9,6 +9,7 @@ from lcmtypes.soccer import game_state_t, pass_agreement_t, role_t, skill_comman
 from procs.behaviour import greedy, roles
 from procs.behaviour.bodies import Bodies
 from procs.behaviour.commands import accepted_place
+from procs.behaviour.company import Company, job_among_silent, rank_of
 from procs.behaviour.game import Game, frame_of, game_of
 from procs.behaviour.order import Order
 from procs.behaviour.skills.book import SKILLS
@@ -63,6 +64,7 @@ class Agent(Component):
         self._robot = self.name.rpartition("/")[0]
         self._frame = frame_of(self.game_state.value, self._team)
         self._tactics = Tactics(self.config.field)
+        self._company = Company()
         self._call: Call | None = None
         self.config_changed()
 
@@ -98,7 +100,10 @@ class Agent(Component):
         if self.config.strategy == "greedy":
             return greedy.decide(view, game, held, field)
         idle = roles.Job(self.role.value.role or roles.DEFENDER, view.own.place)
-        job = roles.assign(view, field).get(self._robot, idle)
+        if self._company.watch(view, self.clock.iteration_s) and view.localized:
+            job = job_among_silent(view, rank_of(self._robot, self.config.players), field)
+        else:
+            job = roles.assign(view, field).get(self._robot, idle)
         if not self.config.use_roles and game.free_play and job.role != roles.GOALKEEPER:
             job = roles.Job(roles.ATTACKER, view.ball.place)
         order = self._tactics.decide(view, game, job, held, self.clock.iteration_s)

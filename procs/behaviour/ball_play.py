@@ -89,7 +89,15 @@ class BallPlay:
         order = order and order._replace(speed_m_s=_GENTLE_M_S)
         for lane_rad in (aim.LANE_RAD, 0.0):
             order = order or self._pass_on(view, math.inf, lane_rad, receiver)
-        return order or self._clear(view)
+        return order or (self._clear(view) if field_players(view) else self._set_free(view))
+
+    def _set_free(self, view: View) -> Order:
+        """Returns the order of a taker that has no field player to pass to: the ball stays in play, near the robot."""
+        if view.ball.place.x_m < _DANGER_M:
+            return self._clear(view)
+        if self._kick is None or self._kick.skill != "push" or self._kick_s > _COMMITTED_S:
+            self._kick, self._kick_s = self._push(view), 0.0
+        return self._kick
 
     def take_penalty(self, view: View) -> Order:
         """Returns the order of a penalty's taker."""

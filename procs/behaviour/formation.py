@@ -19,7 +19,7 @@ _LAYOFF_M, _LAYOFF_RAD = 2.4, (0.55, 0.8, 1.1, 1.5)
 _AREA_M = 0.35
 """Robots without the ball keep that distance from the penalty areas."""
 _APART_M = 1.0
-"""Least distance of two robots at a set piece."""
+"""Least distance of two places."""
 _TURNS_RAD = [sign * 0.15 * step for step in range(1, 21) for sign in (1, -1)]
 _LENGTH_M, _WIDTH_M = 22.0, 14.0
 """Field for which the distances of formations are; they become larger or smaller with the field."""
@@ -33,6 +33,9 @@ _SHOT_M, _BESIDE_SHOT_M = 8.0, 1.2
 """Distance from which a mate with the ball shoots, and distance of the others from the way to the goal's middle."""
 _HALFWAY_M = 0.5
 """At a kick-off a robot's middle stays that far in its own half."""
+_ROW_M, _ROW_BACK_M, _ROW_Y_M = 1.5, 5.0, 4.0
+"""Further robots of a large team: from one row to the next, from the ball to the first row, and beside the middle."""
+_SHIFT_M, _TOUCH_LINE_M = 1.5, 0.5  # a place that is taken moves aside so far, and stays inside the touch lines
 
 
 def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
@@ -64,10 +67,32 @@ def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
         aside_m = shooter_aside_m if ball.x_m > 3.0 * along else 5.0 * across
         y_m = clamp(ball.y_m - flank * (3.5 * across), -aside_m, aside_m)
         sweeper = Point(min(ball.x_m + 1.0 * along, shooter_m), y_m)
+        if math.dist(sweeper, supporter) < _APART_M:  # the ball is in the corner: both would wait for the same pass
+            sweeper = Point(sweeper.x_m, supporter.y_m - flank * _APART_M)
     aside_m = 6.0 * across
     y_m = clamp(ball.y_m - flank * (2.0 * across), -aside_m, aside_m)
     spare = Point(clamp(ball.x_m - 3.0 * along, -back_m, 2.0 * along), y_m)
     return [supporter, stopper, sweeper, spare]
+
+
+def further_places(count: int, others: Sequence[Point], ball: Point, flank: float, field: Field) -> list[Point]:
+    """Returns places of the robots of a large team for which `places` has none left, apart from those of the others.
+
+    They are in rows behind the ball, on both flanks in turn.
+    """
+    along, across = scale(field)
+    back_m, widest_m = _before_area_m(field, _BACK_M), field.half_width_m - _TOUCH_LINE_M
+    taken, found = [*others, ball], []
+    for row in range(count):
+        flank = -flank
+        x_m = clamp(ball.x_m - (_ROW_BACK_M + _ROW_M * row) * along, -back_m, back_m)
+        y_m = 0.5 * ball.y_m + flank * _ROW_Y_M * across
+        shifts_m = (_SHIFT_M * sign * step for step in range(2 * count + 8) for sign in (flank, -flank))
+        tried = [Point(x_m, clamp(y_m + shift_m, -widest_m, widest_m)) for shift_m in shifts_m]
+        place = next((each for each in tried if all(math.dist(each, one) >= _APART_M for one in taken)), tried[0])
+        taken.append(place)
+        found.append(place)
+    return found
 
 
 def scale(field: Field) -> tuple[float, float]:

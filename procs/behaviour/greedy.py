@@ -6,16 +6,17 @@ from procs.behaviour import formation
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.order import Order
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, PASSER
-from procs.behaviour.view import View
+from procs.behaviour.view import Robot, View
 from procs.model.field import Field, Point
-from procs.model.geometry import bearing_rad, between
+from procs.model.geometry import bearing_rad, between, clamp
+from procs.model.robot import ABSENT
 
-_KEEPER = 1
-_TAKER = 2
+_KEEPER, _TAKER = 1, 2  # ranks in the team
 _TOUCHED_M = 0.5  # a robot this near to the ball has touched it
 _CLEAR_M = 0.5  # distance from the own penalty area
 _PUSH = 0.2  # share of the way to the goal for which a robot that is alone pushes the ball ahead
-_MIDDLE = 3.5  # mean of the numbers of the robots that do not have the ball
+_MIDDLE = 3.5  # mean of the ranks of the robots that do not have the ball, in the usual line-up
+_INSIDE_M = 0.5  # distance of their places from the touch lines
 # On the usual field; on others they are larger or smaller with it:
 _SHOT_RANGE_M = 8.0
 _BEHIND_M = 1.5  # distance along x between the robots that do not have the ball
@@ -25,25 +26,27 @@ _ASIDE_M = 0.8  # distance along y between those robots
 def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str, Order]:
     """Returns the role and the order of a robot, in the attack frame.
 
-    Number 1 keeps the goal, number 2 takes the set pieces; a robot that is alone plays, whatever its number. In play
-    the robot that believes itself nearest to the ball goes for it and shoots; the others line up behind it. A taker
-    shoots from where it is, and leaves the ball alone until another robot is at it, if it has mates.
+    The lowest number of the robots that play keeps the goal, the next one takes the set pieces; a robot that is alone
+    plays, whatever its number. In play the robot that believes itself nearest to the ball goes for it and shoots; the
+    others line up behind it. A taker shoots from where it is, and leaves the ball alone until another robot is at it,
+    if it has mates.
     """
-    number, ball = view.own.number, view.ball.place
+    mates = _mates(view)
+    rank, ball = _rank(view), view.ball.place
     if game.paused or not view.localized:
         return DEFENDER, Order("stop", intention="pause" if game.paused else "lost")
     alone = _is_alone(view)
-    if number == _KEEPER and not alone:
+    if rank == _KEEPER and not alone:
         return GOALKEEPER, Order("shoot", field.goal_centre(1.0)) if holds_ball else Order("keep_line")
     if not game.free_play:
-        takes = (number == _TAKER or alone) and game.whose is Whose.OURS
+        takes = (rank == _TAKER or alone) and game.whose is Whose.OURS
         return _set_piece(view, game, takes, holds_ball, field)
-    taken = view.own.role == PASSER and bool(view.mates) and not view.ball.is_near(view.others, _TOUCHED_M)
+    taken = view.own.role == PASSER and bool(mates) and not view.ball.is_near(view.others, _TOUCHED_M)
     if holds_ball and taken:
         return PASSER, Order("shoot", field.goal_centre(1.0), intention="take set piece")
     if holds_ball:
         return ATTACKER, _play(view, field)
-    free = [robot for robot in view.mates if robot.role != PASSER]
+    free = [robot for robot in mates if robot.role != PASSER]
     if not taken:
         free.append(view.own)
     nearest = min(free, key=lambda robot: (math.dist(robot.place, ball), robot.name), default=None)
@@ -51,13 +54,26 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
         return ATTACKER, Order("get_ball", ball, bearing_rad(ball, field.goal_centre(1.0)), "chase")
     along, across = formation.scale(field)
     least_m = field.penalty_area_depth_m + _CLEAR_M - field.half_length_m
-    aside_m = _ASIDE_M * across * (number - _MIDDLE)
-    place = Point(max(ball.x_m - _BEHIND_M * along * number, least_m), 0.5 * ball.y_m + aside_m)
+    aside_m = _ASIDE_M * across * (rank - _MIDDLE)
+    widest_m = field.half_width_m - _INSIDE_M
+    y_m = clamp(0.5 * ball.y_m + aside_m, -widest_m, widest_m)
+    place = Point(max(ball.x_m - _BEHIND_M * along * rank, least_m), y_m)
     return PASSER if taken else DEFENDER, Order("goto", place, bearing_rad(place, ball), "follow")
 
 
+def _mates(view: View) -> list[Robot]:
+    """Returns the mates that play."""
+    return [mate for mate in view.mates if mate.role != ABSENT]
+
+
+def _rank(view: View) -> int:
+    """Returns the place of the robot in the order of its team's numbers, from 1; its number if it hears no mate."""
+    own, mates = (view.own.number, view.own.name), _mates(view)
+    return 1 + sum((mate.number, mate.name) < own for mate in mates) if mates else view.own.number
+
+
 def _is_alone(view: View) -> bool:
-    return not (view.mates or view.silent_mates)
+    return not (_mates(view) or view.silent_mates)
 
 
 def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Field) -> tuple[str, Order]:
@@ -65,7 +81,7 @@ def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Fie
     goal_rad = bearing_rad(game.spot, goal)
     if not takes:
         along, _ = formation.scale(field)
-        place = Point(game.spot.x_m - _BEHIND_M * along * view.own.number, 0.5 * game.spot.y_m)
+        place = Point(game.spot.x_m - _BEHIND_M * along * _rank(view), 0.5 * game.spot.y_m)
         step = formation.next_step(view.own.place, formation.allowed(place, game, field), game, field, view.others)
         return DEFENDER, Order("goto", step, bearing_rad(step, game.spot), "keep distance")
     if holds_ball and _is_alone(view):

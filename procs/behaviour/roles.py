@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from procs.behaviour import ballistics
-from procs.behaviour.formation import places
+from procs.behaviour.formation import further_places, places
 from procs.behaviour.passing import taken
 from procs.behaviour.view import Ball, Robot, View
 from procs.model.field import Field, Point
@@ -21,6 +21,7 @@ _ROLLS_M_S = 0.6  # the nearest robot takes a slower ball, whatever was agreed
 _STAY_S = 0.6  # an attacker keeps its role unless another is so much faster at the ball
 _MIDDLE_M = 1.5  # a ball no further from the middle leaves the supporter on its flank
 _STAY_M = 1.0  # a robot keeps its place in the formation unless a change saves this much distance
+_FEW = 5  # of so few robots all orders are tried
 _AGREED_M = 20.0  # the same for a robot that has accepted a pass
 
 
@@ -49,7 +50,7 @@ def assign(view: View, field: Field) -> dict[str, Job]:
     if not team:
         return jobs
     course = ballistics.Course(view.ball, view.bodies)
-    times_s = {robot.name: _time_to_ball_s(robot, view.ball, course) for robot in team}
+    times_s = {robot.name: time_to_ball_s(robot, view.ball, course) for robot in team}
     free = [robot for robot in team if robot.role != PASSER] or team
     attacker = receiver(team, view) or min(
         free, key=lambda robot: (times_s[robot.name] - _STAY_S * (robot.role == ATTACKER), robot.name)
@@ -58,9 +59,10 @@ def assign(view: View, field: Field) -> dict[str, Job]:
     team.remove(attacker)
     theirs_s = min((course.meet(other.place, other.velocity_m_s).time_s for other in view.opponents), default=math.inf)
     ours = times_s[attacker.name] <= theirs_s
-    roles = [SUPPORTER, DEFENDER, DEFENDER, DEFENDER]
-    posts = [Job(*post) for post in zip(roles, places(view.ball.place, ours, _flank(view, team), field), strict=True)]
-    jobs.update(_fill(team, posts))
+    flank = _flank(view, team)
+    posts = places(view.ball.place, ours, flank, field)
+    posts += further_places(len(team) - len(posts), posts, view.ball.place, flank, field)
+    jobs.update(_fill(team, [Job(DEFENDER if number else SUPPORTER, post) for number, post in enumerate(posts)]))
     return jobs
 
 
@@ -79,7 +81,8 @@ def receiver(team: Sequence[Robot], view: View) -> Robot | None:
     return None
 
 
-def _time_to_ball_s(robot: Robot, ball: Ball, course: ballistics.Course) -> float:
+def time_to_ball_s(robot: Robot, ball: Ball, course: ballistics.Course) -> float:
+    """Returns the time in which a robot meets the ball; 0 for one that has it."""
     # A dribbling robot takes the ball along; a mate ahead of the ball would seem to meet it sooner.
     return (
         0.0 if math.dist(robot.place, ball.place) < _HAS_BALL_M else course.meet(robot.place, robot.velocity_m_s).time_s
@@ -94,11 +97,30 @@ def _flank(view: View, team: Sequence[Robot]) -> float:
 
 
 def _fill(team: Sequence[Robot], posts: Sequence[Job]) -> dict[str, Job]:
-    filled = list(posts[: len(team)])
-    best = min(itertools.permutations(range(len(filled))), key=lambda order: (_way_m(team, filled, order), order))
-    jobs = {robot.name: filled[index] for robot, index in zip(team, best, strict=False)}
-    left = {robot.name: posts[-1] for robot in team if robot.name not in jobs}
-    return jobs | left
+    """Returns the job of each robot; there are at least as many posts, and the most important ones are filled."""
+    orders = itertools.permutations(range(len(team)))
+    if len(team) <= _FEW:
+        best = min(orders, key=lambda order: (_way_m(team, posts, order), order))
+    else:
+        best = _exchanged(team, posts, next(orders))
+    return {robot.name: posts[index] for robot, index in zip(team, best, strict=True)}
+
+
+def _exchanged(team: Sequence[Robot], posts: Sequence[Job], order: tuple[int, ...]) -> tuple[int, ...]:
+    """Returns the order after all exchanges of two posts that save way: a large team has too many orders to try all."""
+    pairs = list(itertools.combinations(range(len(order)), 2))
+    while True:
+        others = [_with_exchange(order, *pair) for pair in pairs]
+        best = min(others, key=lambda other: (_way_m(team, posts, other), other))
+        if _way_m(team, posts, best) >= _way_m(team, posts, order):
+            return order
+        order = best
+
+
+def _with_exchange(order: tuple[int, ...], one: int, two: int) -> tuple[int, ...]:
+    changed = list(order)
+    changed[one], changed[two] = order[two], order[one]
+    return tuple(changed)
 
 
 def _way_m(team: Sequence[Robot], posts: Sequence[Job], order: Sequence[int]) -> float:

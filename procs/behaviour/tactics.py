@@ -13,7 +13,7 @@ from procs.behaviour.skills.keeping import BEFORE_LINE_M
 from procs.behaviour.view import Robot, View
 from procs.model.field import Field, Point
 from procs.model.game_states import State
-from procs.model.geometry import bearing_rad, clamp
+from procs.model.geometry import ahead, bearing_rad, clamp
 
 _AREA_M = 1.2  # a marking robot would stand in the penalty area with an opponent so near to it
 _MARK_M = 3.0  # a defender leaves its place for an opponent this near
@@ -22,6 +22,7 @@ _FAST_BALL_M_S = 1.2  # the goalkeeper does not leave its line for a faster ball
 _KICK_OFF_RAD = 1.2  # nearly sideways: all mates are in the own half
 _BARRED_S = 4.0  # by then another robot has touched the ball of a set piece, or the game was interrupted
 _TOUCHED_M = 0.4  # a robot this near to the ball has touched it
+_GUARD_M = 1.2  # from the ball that it may not touch, a robot stands before the own goal
 _BENCH_M = 3.0  # from the goal lines
 _PASSED_S = 1.0  # after a pass the passer leaves the ball to the receiver
 _PASSED_M_S = 1.5  # a ball that has left the robot faster has been passed
@@ -95,9 +96,9 @@ class Tactics:
 
     def _still_barred_s(self, view: View, game: Game, holds_ball: bool) -> float:
         """Returns for how long the robot leaves the ball alone after a set piece that it has taken."""
-        if game.stopped or not view.mates or holds_ball:
+        if game.stopped or not (view.mates or view.silent_mates) or holds_ball:
             return 0.0
-        if self._taking and self._last.skill in ("pass", "shoot", "lob", "clear"):
+        if self._taking and self._last.skill in ("pass", "shoot", "lob", "push", "clear"):
             return _BARRED_S  # it held the ball in the last tick and does not any more
         if not game.free_play and self._fumbled(view) and self._taking:
             return _BARRED_S
@@ -123,6 +124,8 @@ class Tactics:
             return Order("search", job.place, intention="search")
         if holds_ball:
             return self._play_ball(view)
+        if job.role == ATTACKER and self._barred_s > 0.0 and not field_players(view):
+            return self._await_touch(view)
         if job.role == ATTACKER and not keeper_takes(view, self.field):
             return self._go_for_ball(view)
         return self._help(view, game, job)
@@ -196,7 +199,7 @@ class Tactics:
     def _play_ball(self, view: View) -> Order:
         if self._taking and self._penalty:
             return self._play.take_penalty(view)
-        if self._taking and view.mates:
+        if self._taking and (view.mates or view.silent_mates):
             order = self._play.take_set_piece(view, self._receiver)
             self._receiver = order.receiver or self._receiver
             return self._agreed(order)
@@ -240,6 +243,12 @@ class Tactics:
         if view.ball.is_near(field_players(view), _HELD_M):
             place = formation.beside_shot(view.own.place, place, view.ball.place, self.field)
         return self._stand(view, place, job.role)
+
+    def _await_touch(self, view: View) -> Order:
+        """Returns the order of the only field player after its set piece: it guards the ball until it is touched."""
+        ball = view.ball.place
+        place = ahead(ball, bearing_rad(ball, self.field.goal_centre(-1.0)), _GUARD_M)
+        return self._stand(view, place, "await touch")
 
     def _stand(self, view: View, place: Point, intention: str) -> Order:
         return Order("goto", place, bearing_rad(place, view.ball.place), intention)

@@ -136,8 +136,8 @@ class Named(Numbered, Protocol):
 
 
 def number_of_mate(mate: Numbered, players: Mapping[str, Player]) -> int:
-    """Returns the number that a message states about a mate, or else that of the player."""
-    return mate.number or number_of_player(mate.name, players)
+    """Returns the number that a message states about a mate; that of the player if it states none above 0."""
+    return mate.number if mate.number > 0 else number_of_player(mate.name, players)
 
 
 def team_in(robot: Named) -> str:

@@ -13,10 +13,10 @@ _MATE_M_S = 0.3  # deviation of the velocity of a mate's mouth, whose turning is
 
 
 def mate_of(message: team_message_t, now_s: float) -> Mate | None:
-    """Returns the state of the sender; None if the message is from the future or holds impossible values."""
+    """Returns the state of the sender; None if it tells no name, is from the future or holds impossible values."""
     values = (message.x_m, message.y_m, message.heading_rad, message.vx_m_s, message.vy_m_s)
     told_s = message.header.time_us / 1e6
-    if told_s > now_s or not plausible(*values) or not is_covariance(message.pose_covariance):
+    if not message.robot or told_s > now_s or not plausible(*values) or not is_covariance(message.pose_covariance):
         return None
     return Mate(
         name=message.robot,

@@ -42,6 +42,7 @@ from procs.world_model.told import ball_of, held_by, mate_of, obstacles_of
 from procs.world_model.world_messages import fill_ball, fill_kick, fill_plan, fill_team_message, fill_world_model
 
 _STALE_S = 0.5  # older sightings of mates are not used, and older words of the own kicker
+_BEHIND_WALL_M = 1.0  # a mate that believes itself further outside is lost
 _RESTART_S = 2.0  # an agent that is silent for longer does not play
 _IN_MOUTH_M2 = np.eye(2) * 0.03**2
 """Covariance of a ball somewhere in the mouth."""
@@ -169,7 +170,11 @@ class WorldModel(Component):
         told = []
         for message in (message for inbox in self.team_inbox.fresh for message in inbox.messages):
             mate = mate_of(message, now_s) if self._is_of_team(message.robot) else None
-            if mate is not None and mate.name != self._robot and (mate := self._team.tell(mate)):
+            if mate is None or mate.name == self._robot:
+                continue
+            is_wrong = mate.localized and not self._is_inside_walls(mate)  # and with it all that it sees
+            mate.localized = mate.localized and not is_wrong
+            if (mate := self._team.tell(mate)) and not is_wrong:
                 told.append((message, mate))
         return told if self.config.use_team_sight else []
 
@@ -177,6 +182,11 @@ class WorldModel(Component):
         """Returns whether a sender may be a mate: robots of the other team, whose radio is heard, are not."""
         player = player_of(robot, self.config.players)
         return not (player and self._own_team) or TEAM_NUMBERS[player.team] == self._own_team
+
+    def _is_inside_walls(self, mate: Mate) -> bool:
+        """Returns whether a mate can be where it believes to be: inside the walls, give or take a large error."""
+        field, (x_m, y_m) = self.config.field, mate.position_m.tolist()
+        return field.in_field(x_m, y_m, field.border_m + _BEHIND_WALL_M)
 
     def _follow_ball(
         self, view: OwnView, team: Sequence[PlaceRow], told: list[tuple[team_message_t, Mate]], passed_s: float

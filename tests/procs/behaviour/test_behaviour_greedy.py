@@ -7,13 +7,21 @@ import pytest
 from fwk.testing import settings_in
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.greedy import decide
+from procs.behaviour.view import Ball, Robot
 from procs.model.field import Field, Point
 from procs.model.game_states import State
+from procs.model.robot import ABSENT
 from tests.procs.behaviour.behaviour_parts import ball, robot, view
 
 FIELD = Field()
 PLAY = Game(State.PLAY, stopped=False)
-OTHERS = (robot("cyan3", -4.0, 2.0),)
+KEEPER = robot("cyan1", -10.5, 0.0)
+OTHERS = (KEEPER, robot("cyan3", -4.0, 2.0))
+FIVE = (KEEPER, *(robot(f"cyan{number}", 1.9 - 0.1 * number, -3.0) for number in range(2, 6)))
+
+
+def five_without(name: str) -> tuple[Robot, ...]:
+    return tuple(mate for mate in FIVE if mate.name != name)
 
 
 def test_nearest_robot_chases_and_others_stay_behind_the_ball() -> None:
@@ -38,9 +46,10 @@ def small(point: Point) -> Point:
 
 @pytest.mark.parametrize(("name", "x_m"), [("cyan2", -6.0), ("cyan4", -3.0), ("cyan5", 4.0)])
 def test_distances_shrink_with_the_field(name: str, x_m: float) -> None:
-    field, mates = Field(length_m=11.0, width_m=7.0, penalty_area_depth_m=1.0), (robot("cyan3", 1.9, 0.0),)
+    field, mates = Field(length_m=11.0, width_m=7.0, penalty_area_depth_m=1.0), five_without(name)
     usual = view(robot(name, x_m, 1.0), ball(2.0, 0.4), mates)
-    half = view(robot(name, x_m / 2, 0.5), ball(1.0, 0.2), (robot("cyan3", 0.95, 0.0),))
+    nearer = tuple(mate._replace(place=small(mate.place)) for mate in mates)
+    half = view(robot(name, x_m / 2, 0.5), ball(1.0, 0.2), nearer)
     assert decide(half, PLAY, False, field)[1].place == pytest.approx(small(decide(usual, PLAY, False, FIELD)[1].place))
     with_ball = decide(usual, PLAY, True, FIELD)[1], decide(half, PLAY, True, field)[1]
     assert with_ball[1].skill == with_ball[0].skill
@@ -52,7 +61,7 @@ def test_robots_line_up_in_half_the_room_of_half_the_field() -> None:
         Field(length_m=11.0, width_m=7.0),
         Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(5, 0)),
     )
-    place = decide(view(robot("cyan5", 1.2, 0.0), ball(5.0, 0.0), OTHERS), game, False, field)[1].place
+    place = decide(view(robot("cyan5", 1.2, 0.0), ball(5.0, 0.0), five_without("cyan5")), game, False, field)[1].place
     assert place.x_m == pytest.approx(5.0 - 5 * 0.75)
 
 
@@ -88,9 +97,41 @@ def test_distance_is_kept_at_the_other_teams_set_piece(name: str) -> None:
 
 def test_second_robot_takes_the_own_set_piece() -> None:
     game = Game(State.FREE_KICK, stopped=False, whose=Whose.OURS, spot=Point(1.0, 1.0))
-    seen = view(robot("cyan2", 0.0, 1.0), ball(1.0, 1.0), (robot("cyan4", -4.0, 2.0),))
-    assert decide(seen, game, False, FIELD)[1].skill == "get_ball"
-    assert decide(seen._replace(own=robot("cyan3", 0.0, 1.0)), game, False, FIELD)[1].skill == "goto"
+    orders = {}
+    for name in ("cyan2", "cyan3"):
+        seen = view(robot(name, 0.0, 1.0), ball(1.0, 1.0), five_without(name))
+        orders[name] = decide(seen, game, False, FIELD)[1].skill
+    assert orders == {"cyan2": "get_ball", "cyan3": "goto"}
+
+
+TRIO = (robot("cyan3", -9.0, 0.0), robot("cyan7", -3.0, 1.0), robot("cyan9", 0.5, -2.0))
+
+
+def decided(name: str, team: tuple[Robot, ...], game: Game) -> tuple[str, str]:
+    own = next(one for one in team if one.name == name)
+    role, order = decide(view(own, ball(1.0, 1.0), tuple(one for one in team if one is not own)), game, False, FIELD)
+    return role, order.skill
+
+
+def test_lowest_numbers_of_a_team_keep_goal_and_take_set_pieces() -> None:
+    game = Game(State.FREE_KICK, stopped=False, whose=Whose.OURS, spot=Point(1.0, 1.0))
+    found = [decided(one.name, TRIO, game) for one in TRIO]
+    assert found == [("goalkeeper", "keep_line"), ("passer", "get_ball"), ("defender", "goto")]
+
+
+def test_robots_that_do_not_play_neither_keep_goal_nor_chase() -> None:
+    dead = (TRIO[0]._replace(role=ABSENT), robot("cyan4", 1.2, 1.0, role=ABSENT), *TRIO[1:])
+    assert decided("cyan7", dead, PLAY) == ("goalkeeper", "keep_line")
+    assert decided("cyan9", dead, PLAY) == ("attacker", "get_ball")
+    last = view(TRIO[1], ball(1.0, 1.0), (TRIO[0]._replace(role=ABSENT),))
+    assert decide(last, PLAY, False, FIELD)[1].skill == "get_ball", "the only one that plays is alone"
+
+
+@pytest.mark.parametrize("name", ["cyan9", "cyan12"])
+def test_places_of_high_numbers_are_on_the_field(name: str) -> None:
+    silent = view(robot(name, -4.0, 0.0), ball(2.0, 6.5), (robot("cyan1", -10.0, 0.0), robot("cyan2", 2.0, 6.0)))
+    for seen in (silent, silent._replace(mates=(), silent_mates=silent.mates, ball=Ball(known=False))):
+        assert FIELD.in_field(*decide(seen, PLAY, False, FIELD)[1].place, -0.3)
 
 
 def test_taker_shoots_and_leaves_the_ball_until_it_is_touched() -> None:

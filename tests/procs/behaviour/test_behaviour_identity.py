@@ -66,6 +66,14 @@ def test_number_in_the_world_model_precedes_the_players() -> None:
     assert view_of(model, "zoe", "", Frame(1.0), players=PLAYERS).mates[0].number == 7
 
 
+@pytest.mark.parametrize("number", [0, -5])
+def test_number_below_one_is_that_of_the_players(number: int) -> None:
+    model = model_of("anna", -5.0)
+    model.mates[0].number = number
+    jobs = roles.assign(view_of(model, "zoe", "", Frame(1.0), players=PLAYERS), FIELD)
+    assert jobs["zoe"].role == roles.GOALKEEPER
+
+
 @pytest.mark.parametrize(("own", "mate", "gives_way"), [("zoe", "anna", True), ("anna", "zoe", False)])
 def test_mate_with_the_higher_number_gives_way(own: str, mate: str, gives_way: bool) -> None:
     (mover,) = movers(model_of(mate, 2.0, -1.0), 0.1, PLAYERS[own].number, PLAYERS)

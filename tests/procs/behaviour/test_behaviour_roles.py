@@ -102,6 +102,27 @@ def test_six_robots_all_have_jobs() -> None:
     assert set(assign(view(six[0], ball(0.0, 0.0), six[1:]), FIELD)) == {mate.name for mate in six}
 
 
+@pytest.mark.parametrize("ours", [True, False])
+def test_places_of_the_formation_are_apart_for_any_ball(ours: bool) -> None:
+    for x_m, y_m in itertools.product(range(-11, 12), range(-7, 8)):
+        found = formation.places(Point(x_m, y_m), ours, math.copysign(1.0, -y_m), FIELD)
+        assert min(math.dist(*pair) for pair in itertools.combinations(found, 2)) > 0.75, (x_m, y_m)
+
+
+@pytest.mark.parametrize("number", [7, 8, 11])
+@pytest.mark.parametrize("where", [(0.0, 0.0), (-10.0, -6.0), (-8.0, -1.0), (10.0, 6.5), (6.0, 0.3), (-4.0, 3.0)])
+def test_robots_of_a_large_team_have_places_apart(number: int, where: tuple[float, float]) -> None:
+    team = tuple(robot(f"cyan{index}", -index / 2, (-1) ** index * 3.0) for index in range(1, number + 1))
+    found = [assign(view(own, ball(*where), tuple(one for one in team if one is not own)), FIELD) for own in team[:2]]
+    assert found[0] == found[1]
+    further = [job.place for job in found[0].values() if job.role in (DEFENDER, SUPPORTER)]
+    assert len(further) == number - 2
+    assert min(math.dist(*pair) for pair in itertools.combinations(further, 2)) > 0.75
+    possible = itertools.product((True, False), (1.0, -1.0))
+    usual = {place for ours, flank in possible for place in formation.places(Point(*where), ours, flank, FIELD)}
+    assert all(FIELD.in_field(*each) and not FIELD.in_penalty_area(*each, -1.0) for each in {*further} - usual)
+
+
 @pytest.mark.parametrize("state", [State.KICK_OFF, State.THROW_IN, State.FREE_KICK, State.CORNER_KICK, State.DROP_BALL])
 @pytest.mark.parametrize("whose", Whose)
 @pytest.mark.parametrize("spot", [Point(0.0, 0.0), Point(10.8, 6.8), Point(-10.8, -6.8), Point(-3.0, 6.9)])

@@ -7,10 +7,10 @@ import pytest
 from procs.behaviour import set_pieces
 from procs.behaviour.bodies import USUAL
 from procs.behaviour.game import Game, Whose
-from procs.behaviour.roles import ATTACKER, SUPPORTER
+from procs.behaviour.roles import ATTACKER, GOALKEEPER, SUPPORTER
 from procs.behaviour.set_pieces import BOOK
 from procs.behaviour.tactics import Tactics
-from procs.behaviour.view import Agreement
+from procs.behaviour.view import Agreement, View
 from procs.model.field import Point
 from procs.model.game_states import State
 from procs.model.geometry import between
@@ -93,3 +93,30 @@ def test_plan_of_a_set_piece_is_kept_once_it_may_be_taken() -> None:
     rival = robot("", *between(game.spot, before, 0.6))
     tactics.decide(seen._replace(opponents=(rival,)), game._replace(stopped=False), job(ATTACKER), False, 0.05)
     assert tactics.passing.said.place == before
+
+
+def two_robots(x_m: float, heading_rad: float = 0.0) -> View:
+    """Returns the view of a field player at its ball at (x_m + 0.33, 4.0), whose only mate is the goalkeeper."""
+    keeper = robot("cyan1", -10.5, 0.0, role=GOALKEEPER)
+    return view(robot("cyan2", x_m, 4.0, heading_rad), ball(x_m + 0.33, 4.0), (keeper,), (robot("", 10.5, 0.0),))
+
+
+@pytest.mark.parametrize(("x_m", "skill"), [(0.0, "push"), (-3.0, "push"), (-7.0, "clear")])
+def test_taker_with_only_its_keeper_does_not_kick_the_ball_out(x_m: float, skill: str) -> None:
+    tactics, game = Tactics(FIELD), Game(State.FREE_KICK, stopped=False, whose=Whose.OURS, spot=Point(x_m + 0.33, 4.0))
+    orders = [tactics.decide(two_robots(x_m), game, job(ATTACKER), True, 0.05) for _ in range(10)]
+    assert orders[-1].skill == skill
+    assert skill == "clear" or FIELD.in_field(*orders[-1].place, -0.5)
+
+
+def test_only_field_player_awaits_a_touch_after_its_set_piece() -> None:
+    tactics, game = Tactics(FIELD), Game(State.FREE_KICK, stopped=False, whose=Whose.OURS, spot=Point(0.33, 4.0))
+    for holds in [*[True] * 10, False]:
+        tactics.decide(two_robots(0.0), game, job(ATTACKER), holds, 0.05)
+    play, free = Game(State.PLAY, stopped=False), two_robots(0.0)._replace(ball=ball(2.0, 4.0))
+    order = tactics.decide(free, play, job(ATTACKER), False, 0.05)
+    assert tactics.barred
+    assert (order.skill, order.intention) == ("goto", "await touch")
+    assert math.dist(order.place, free.ball.place) > 1.0
+    touched = free._replace(opponents=(robot("", 2.3, 4.0),))
+    assert tactics.decide(touched, play, job(ATTACKER), False, 0.05).skill == "get_ball"

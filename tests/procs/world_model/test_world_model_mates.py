@@ -250,3 +250,16 @@ def test_robot_of_the_other_team_is_no_mate() -> None:
         robot.bench.port("team_inbox").put(messages=[team_message_t(robot=name, localized=True, x_m=1.0)])
         robot.bench.iterate()
     assert [mate.name for mate in robot.world.mates] == ["cyan2", "stranger"]
+
+
+@pytest.mark.parametrize(("name", "x_m"), [("", 1.0), ("cyan2", 300.0), ("cyan2", -14.0)])
+def test_mate_without_a_name_or_behind_the_walls_is_left_out(name: str, x_m: float) -> None:
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    wrong = team_message_t(robot=name, localized=True, x_m=x_m, ball_visible=True, ball_x_m=2.0)
+    for message in (wrong, wrong, wrong, team_message_t(robot="cyan3", localized=True)):
+        robot.sense(None, [])
+        message.header.time_us = robot.bench.time_us
+        robot.bench.port("team_inbox").put(messages=[message])
+        robot.bench.iterate()
+    assert [mate.name for mate in robot.world.mates] == ["cyan3"]
+    assert not robot.world.ball.known
