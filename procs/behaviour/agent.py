@@ -38,6 +38,8 @@ class AgentConfig(Config):
     """Size and friction of the ball."""
     strategy: Literal["team", "greedy"] = "team"
     """`team`: roles, passes and formations; `greedy`: the simple opponent, which chases the ball."""
+    use_pressing: bool = True
+    """In play a second robot goes for the ball while an opponent is at it sooner."""
     use_roles: bool = True
     """False: in play every field player goes for the ball, to show what roles are worth."""
     new_target_m: float = 0.05
@@ -103,7 +105,8 @@ class Agent(Component):
         if self._company.watch(view, self.clock.iteration_s) and view.localized:
             job = job_among_silent(view, rank_of(self._robot, self.config.players), field)
         else:
-            job = roles.assign(view, field).get(self._robot, idle)
+            presses = self.config.use_pressing and game.free_play
+            job = roles.assign(view, field, presses).get(self._robot, idle)
         if not self.config.use_roles and game.free_play and job.role != roles.GOALKEEPER:
             job = roles.Job(roles.ATTACKER, view.ball.place)
         order = self._tactics.decide(view, game, job, held, self.clock.iteration_s)

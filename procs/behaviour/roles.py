@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from procs.behaviour import ballistics
@@ -19,6 +19,7 @@ PASSER = "passer"
 _HAS_BALL_M = 0.45
 _ROLLS_M_S = 0.6  # the nearest robot takes a slower ball, whatever was agreed
 _STAY_S = 0.6  # an attacker keeps its role unless another is so much faster at the ball
+_STAY_PRESSING_S = 0.3  # a second attacker stays until the team is so much sooner at the ball
 _MIDDLE_M = 1.5  # a ball no further from the middle leaves the supporter on its flank
 _STAY_M = 1.0  # a robot keeps its place in the formation unless a change saves this much distance
 _FEW = 5  # of so few robots all orders are tried
@@ -33,12 +34,12 @@ class Job(NamedTuple):
     """Default place of the role."""
 
 
-def assign(view: View, field: Field) -> dict[str, Job]:
+def assign(view: View, field: Field, presses: bool = False) -> dict[str, Job]:
     """Jobs of the own robot, if it is localized, and of its mates, by name.
 
     The lowest number keeps the goal unless it is alone; of the others the receiver of a pass on its way attacks, else
-    the robot that meets the ball first. The rest fill the formation so that they drive little. The order of the mates
-    does not matter.
+    the robot that meets the ball first. A team that `presses` sends a second robot if an opponent is at the ball
+    sooner. The rest fill the formation so that they drive little. The order of the mates does not matter.
     """
     present = [robot for robot in (*view.mates, view.own) if robot is not view.own or view.localized]
     team = sorted((robot for robot in present if robot.role != ABSENT), key=lambda robot: robot.name)
@@ -51,19 +52,27 @@ def assign(view: View, field: Field) -> dict[str, Job]:
         return jobs
     course = ballistics.Course(view.ball, view.bodies)
     times_s = {robot.name: time_to_ball_s(robot, view.ball, course) for robot in team}
-    free = [robot for robot in team if robot.role != PASSER] or team
-    attacker = receiver(team, view) or min(
-        free, key=lambda robot: (times_s[robot.name] - _STAY_S * (robot.role == ATTACKER), robot.name)
-    )
+    attacker = receiver(team, view) or _first_at_ball(team, times_s)
     jobs[attacker.name] = Job(ATTACKER, view.ball.place)
     team.remove(attacker)
     theirs_s = min((course.meet(other.place, other.velocity_m_s).time_s for other in view.opponents), default=math.inf)
     ours = times_s[attacker.name] <= theirs_s
+    pressing_s = _STAY_PRESSING_S if any(robot.role == ATTACKER for robot in team) else 0.0
+    if presses and len(team) > 1 and theirs_s < times_s[attacker.name] + pressing_s:
+        second = _first_at_ball(team, times_s)
+        jobs[second.name] = Job(ATTACKER, view.ball.place)
+        team.remove(second)
     flank = _flank(view, team)
     posts = places(view.ball.place, ours, flank, field)
     posts += further_places(len(team) - len(posts), posts, view.ball.place, flank, field)
     jobs.update(_fill(team, [Job(DEFENDER if number else SUPPORTER, post) for number, post in enumerate(posts)]))
     return jobs
+
+
+def _first_at_ball(team: Sequence[Robot], times_s: Mapping[str, float]) -> Robot:
+    """Returns the robot that meets the ball first; attackers keep their role unless another is much faster."""
+    free = [robot for robot in team if robot.role != PASSER] or team
+    return min(free, key=lambda robot: (times_s[robot.name] - _STAY_S * (robot.role == ATTACKER), robot.name))
 
 
 def receiver(team: Sequence[Robot], view: View) -> Robot | None:

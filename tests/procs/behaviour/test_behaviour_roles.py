@@ -3,13 +3,14 @@
 import itertools
 import math
 
+import numpy as np
 import pytest
 
 from procs.behaviour import formation, set_pieces
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER, assign
 from procs.behaviour.tactics import leave_field
-from procs.behaviour.view import View
+from procs.behaviour.view import Robot, View
 from procs.model.field import SIDES, Field, Point
 from procs.model.game_states import State
 from tests.procs.behaviour.behaviour_parts import FIELD, agreed, ball, robot, view
@@ -39,6 +40,26 @@ def test_robots_compute_the_same_jobs_in_any_order_of_mates() -> None:
         "cyan4": DEFENDER,
         "cyan5": DEFENDER,
     }
+
+
+def attackers(opponent_x_m: float, *team: Robot, presses: bool = True) -> set[str]:
+    """Returns the robots that go for a ball in the middle while an opponent is in front of it."""
+    seen = view(team[0], ball(0.0, 0.0), team[1:], (robot("magenta2", opponent_x_m, 0.0),))
+    return {name for name, job in assign(seen, FIELD, presses).items() if job.role == ATTACKER}
+
+
+def test_second_robot_presses_while_an_opponent_is_sooner_at_the_ball() -> None:
+    assert attackers(0.6, *TEAM) == {"cyan2", "cyan5"}
+    assert attackers(0.6, *TEAM, presses=False) == {"cyan2"}
+    assert attackers(3.0, *TEAM) == {"cyan2"}
+    assert attackers(0.6, *TEAM[:3]) == {"cyan2"}, "one robot stays behind"
+
+
+def test_second_attacker_presses_until_the_ball_is_surely_won() -> None:
+    pressing = TEAM[4]._replace(role=ATTACKER)
+    barely_sooner = next(x_m for x_m in np.arange(0.6, 3.0, 0.05) if attackers(x_m, *TEAM) == {"cyan2"})
+    assert attackers(barely_sooner, *TEAM[:4], pressing) == {"cyan2", "cyan5"}
+    assert attackers(4.0, *TEAM[:4], pressing) == {"cyan2"}
 
 
 def test_robots_at_one_position_agree_on_the_attacker() -> None:
