@@ -76,7 +76,7 @@ class RefBoxClient(Component):
         self._warn("the referee does not obey", [call.reason for call in finished if not call.done])
         config, connection = self.config, self._connection
         connection.attend(config.host, config.port, config.retry_s, config.connect_s)
-        messages = connection.messages(config.retry_s)
+        messages = connection.messages()
         self._warn("RefBox", [mistake for message in messages if (mistake := self._hand_on(message))])
         if config.report_s and connection.ready and self.clock.since_s(self._reported_us) >= config.report_s:
             self._report()
@@ -136,7 +136,7 @@ class RefBoxClient(Component):
             self.config.robot.radius_m,
             min(ages_s[robot] for robot in heard),
         )
-        self._connection.send(encode(report), self.config.retry_s)
+        self._connection.send(encode(report))
 
     def _plays(self, robot: str) -> bool:
         """Returns whether a robot belongs to the team."""

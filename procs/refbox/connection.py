@@ -22,6 +22,7 @@ class Connection:
         self._dialled_us = 0
         self._stream = Stream()
         self._again_us = 0
+        self._retry_s = 0.0
         self._reason = ""  # why the RefBox cannot be reached
         self._unsent = b""
 
@@ -39,12 +40,13 @@ class Connection:
             retry_s: time after which a RefBox that cannot be reached is tried again.
             connect_s: time after which a RefBox that does not answer is not there.
         """
+        self._retry_s = retry_s
         if self._socket is not None:
-            self._send_rest(retry_s)
+            self._send_rest()
         elif self._clock.now_us >= self._again_us:
-            self._dial(host, port, retry_s, connect_s)
+            self._dial(host, port, connect_s)
 
-    def messages(self, retry_s: float) -> list[bytes]:
+    def messages(self) -> list[bytes]:
         """Returns the messages that have arrived, without their NUL."""
         if self._socket is None:
             return []
@@ -57,20 +59,20 @@ class Connection:
             return []
         except (OSError, ProtocolError) as error:
             reason = str(error)
-        self._lose(reason, retry_s)
+        self._lose(reason)
         return []
 
-    def send(self, data: bytes, retry_s: float) -> None:
+    def send(self, data: bytes) -> None:
         """Sends a message as fast as the RefBox reads; it has to be `ready`."""
         self._unsent = data
-        self._send_rest(retry_s)
+        self._send_rest()
 
     def close(self) -> None:
         """Leaves the RefBox."""
         for each in filter(None, (self._socket, self._dialling)):
             each.close()
 
-    def _dial(self, host: str, port: int, retry_s: float, connect_s: float) -> None:
+    def _dial(self, host: str, port: int, connect_s: float) -> None:
         """Begins to connect, or goes on, without waiting for the RefBox."""
         if self._dialling is None:
             self._dialling = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
@@ -88,15 +90,15 @@ class Connection:
         dialled, self._dialling = self._dialling, None
         if code not in (0, errno.EISCONN):
             dialled.close()
-            self._try_later(retry_s)
+            self._try_later()
             if reason != self._reason:
-                self._log.warning(f"no RefBox at {host}:{port}: {reason}; it is tried again every {retry_s:g} s")
+                self._log.warning(f"no RefBox at {host}:{port}: {reason}; it is tried again every {self._retry_s:g} s")
             self._reason = reason
             return
         self._socket, self._stream, self._reason, self._unsent = dialled, Stream(), "", b""
         self._log.info(f"connected with the RefBox at {host}:{port}")
 
-    def _send_rest(self, retry_s: float) -> None:
+    def _send_rest(self) -> None:
         if self._socket is None or not self._unsent:
             return
         try:
@@ -104,14 +106,14 @@ class Connection:
         except BlockingIOError:
             pass
         except OSError as error:
-            self._lose(str(error), retry_s)
+            self._lose(str(error))
 
-    def _lose(self, reason: str, retry_s: float) -> None:
+    def _lose(self, reason: str) -> None:
         self._log.warning(f"lost the RefBox: {reason}")
         if self._socket is not None:
             self._socket.close()
         self._socket = None
-        self._try_later(retry_s)
+        self._try_later()
 
-    def _try_later(self, retry_s: float) -> None:
-        self._again_us = self._clock.now_us + round(retry_s * 1e6)
+    def _try_later(self) -> None:
+        self._again_us = self._clock.now_us + round(self._retry_s * 1e6)
