@@ -36,7 +36,7 @@ def test_robot_that_saw_a_mate_drive_is_in_company_for_a_while() -> None:
     assert not found[-1]
 
 
-def test_robot_that_hears_its_mates_follows_the_roles_of_the_team() -> None:
+def test_robot_that_hears_mates_follows_the_roles_of_the_team() -> None:
     company, own, mate = Company(), robot("cyan2", 0.0, 0.0), robot("cyan3", 1.0, 1.0)
     assert not company.watch(view(own, BALL, (mate,)), 1.0)
     assert company.watch(view(own, BALL, (mate._replace(role=ABSENT),)), 1.0), "the last one that played may be silent"

@@ -48,7 +48,7 @@ def attackers(opponent_x_m: float, *team: Robot, presses: bool = True) -> set[st
     return {name for name, job in assign(seen, FIELD, presses).items() if job.role == ATTACKER}
 
 
-def test_second_robot_presses_while_an_opponent_is_sooner_at_the_ball() -> None:
+def test_second_robot_presses_while_a_rival_is_sooner_at_ball() -> None:
     assert attackers(0.6, *TEAM) == {"cyan2", "cyan5"}
     assert attackers(0.6, *TEAM, presses=False) == {"cyan2"}
     assert attackers(3.0, *TEAM) == {"cyan2"}
