@@ -27,7 +27,6 @@ from procs.evaluation.beliefs import believed
 from procs.evaluation.conduct import conducted
 from procs.evaluation.match import samples_of
 from procs.evaluation.piece import Piece, piece_of
-from procs.evaluation.poses import pose_samples
 from procs.evaluation.possession import possession
 from procs.evaluation.table import MEASURES, rows_of
 
@@ -295,72 +294,13 @@ def test_launch_file_gives_every_measure_its_samples() -> None:
     assert np.sqrt(found["pose, position"].mean()) < 0.2
 
 
-def believes(x_m: float, localized: bool = True) -> pose_t:
-    made = pose_t()
-    made.x_m, made.localized = x_m, localized
-    return made
-
-
-def carried_piece(ticks: int = 220) -> Piece:
-    """Makes a piece in which the robot is set down 5 m away in its tenth tick."""
-    made = Piece(0.05)
-    for tick in range(FIRST, FIRST + ticks):
-        truth = made.truth[tick] = ground_truth_t()
-        truth.robots = [robot("cyan1", 5.0 if tick >= FIRST + 10 else 0.0, 0.0)]
-    return made
-
-
-def test_carried_robot_is_found_once_its_pose_is_right() -> None:
-    made = carried_piece()
-    at = [(0.0, True)] * 20 + [(0.0, False)] * 10 + [(5.1, True)] * 190
-    made.by_robot["pose"] = {"cyan1": {FIRST + i: believes(*each) for i, each in enumerate(at)}}
-    found = pose_samples(made)
-    assert found["kidnapped, time until found"].tolist() == pytest.approx([1.0])  # from the tenth tick to the thirtieth
-    assert found["kidnapped, found within 10 s"].tolist() == [1.0]
-    assert found["wrong pose believed"][0, 0] == 0, "it could not know at once"
-    assert np.sqrt(found["pose, position"].max()) == pytest.approx(0.1)
-    assert found["pose known"].sum() == 10 + 190
-
-
-def test_standing_robot_has_rows_of_its_own() -> None:
-    made = Piece(0.05)
-    for tick in range(FIRST, FIRST + 20):
-        made.truth[tick] = ground_truth_t(robots=[robot("cyan1", 0.0, 0.0, vx_m_s=0.0 if tick < FIRST + 5 else 1.0)])
-    made.by_robot["pose"] = {"cyan1": dict.fromkeys(made.truth, believes(0.02))}
-    found = pose_samples(made)
-    assert found["pose, robot stands, position"].tolist() == pytest.approx([0.0004] * 5)
-    assert len(found["pose, position"]) == 20
-
-
-def test_wrong_place_found_after_a_search_counts_as_believed() -> None:
-    made = carried_piece()
-    at = [(0.0, True)] * 20 + [(0.0, False)] * 10 + [(-5.0, True)] * 190
-    made.by_robot["pose"] = {"cyan1": {FIRST + i: believes(*each) for i, each in enumerate(at)}}
-    found = pose_samples(made)
-    assert found["wrong pose believed"][0, 0] == 1
-    assert found["kidnapped, time until found"].tolist() == [math.inf]
-
-
-def test_pose_that_leaves_the_true_way_has_jumped() -> None:
-    made = carried_piece()
-    errors_m = [0.0] * 30 + [0.4] * 30 + [-0.4] * 160
-    for tick, truth in made.truth.items():
-        truth.robots = [robot("cyan1", 0.1 * tick, 0.0)]
-    told = {FIRST + i: believes(0.1 * (FIRST + i) + error_m) for i, error_m in enumerate(errors_m)}
-    made.by_robot["pose"] = {"cyan1": told}
-    found = pose_samples(made)
-    assert found["pose jumps"].tolist() == [pytest.approx((1, 220 * 0.05 / 60))]
-    rows = {row.name: row.value for row in rows_of([samples_of(made)])}
-    assert rows["pose, position, 99 %"] == pytest.approx(0.4)
-    assert rows["pose, position"] < 0.38
-
-
 def test_baselines_are_measured_beside_the_beliefs() -> None:
     made = piece([robot("cyan1", 0.0, 1.0), robot("magenta1", 9.0, 0.0)])
     made.by_robot["average_ball"] = {
         "cyan1": {tick: model((truth.ball_x_m, 0.3)) for tick, truth in made.truth.items()}
     }
-    made.by_robot["particle_pose"] = {"cyan1": {tick: believes(0.2) for tick in made.truth}}
+    pose = pose_t(x_m=0.2, localized=True)
+    made.by_robot["particle_pose"] = {"cyan1": dict.fromkeys(made.truth, pose)}
     found = believed(made)
     assert np.sqrt(found["plain average: ball moving, position"].mean()) == pytest.approx(0.3)
     assert np.sqrt(found["200 particles: pose, position"].mean()) == pytest.approx(math.hypot(0.2, 1.0))
