@@ -151,7 +151,7 @@ def _unknown_in(scenario: Scenario) -> list[str]:
 
     Settings with which no system begins, such as two robots of one number, come before.
     """
-    found = list[str]()
+    found: list[str] = []
     try:
         system = system_of(scenario)
         system.tick()
