@@ -30,7 +30,7 @@ _SHOWN, _NAMED = 300, 10  # letters of a failure, and seeds of a cause, that a m
 _CODE = "code.json"
 _ABSENT = "there is none"
 _UNKNOWN_TO_JSON = {"Infinity": "1e999", "-Infinity": "-1e999", "NaN": "null"}
-"""What Python writes, and what JSON has for it; `1e999` is beyond all numbers and read as infinity."""
+"""Values that JSON lacks, as Python writes them, and their JSON: readers take `1e999` for infinity."""
 _TEXT_OR_UNKNOWN = re.compile(r'"(?:[^"\\]|\\.)*"|-?Infinity|NaN')
 _EMPTY: tuple[Any, ...] = ("", {}, [])
 """Values without a measurement."""

@@ -5,7 +5,16 @@ from collections.abc import Mapping
 
 from procs.behaviour import ballistics
 from procs.behaviour.formation import places
-from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, PASSER, SUPPORTER, Job, time_to_ball_s
+from procs.behaviour.roles import (
+    ATTACKER,
+    DEFENDER,
+    GOALKEEPER,
+    PASSER,
+    SUPPORTER,
+    Job,
+    opponents_time_s,
+    time_to_ball_s,
+)
 from procs.behaviour.view import View
 from procs.model.field import Field
 from procs.model.robot import ABSENT, Player, number_of_player, team_of_player
@@ -49,8 +58,7 @@ def job_among_silent(view: View, rank: int, field: Field) -> Job:
     own_s = time_to_ball_s(view.own, view.ball, course) - _STAY_S * (view.own.role == ATTACKER)
     if own_s <= mates_s and view.own.role != PASSER:
         return Job(ATTACKER, view.ball.place)
-    theirs_s = min((course.meet(one.place, one.velocity_m_s).time_s for one in view.opponents), default=math.inf)
     flank = math.copysign(1.0, -view.ball.place.y_m)
-    posts = places(view.ball.place, mates_s <= theirs_s, flank, field)
+    posts = places(view.ball.place, mates_s <= opponents_time_s(view, course), flank, field)
     post = (rank - 1) % len(posts)
     return Job(DEFENDER if post else SUPPORTER, posts[post])

@@ -1,6 +1,5 @@
 """The referee's state as one team sees it, in the attack frame."""
 
-import math
 from enum import Enum
 from typing import NamedTuple
 
@@ -46,8 +45,7 @@ class Game(NamedTuple):
 
 def frame_of(message: game_state_t, team: Team) -> Frame:
     """Returns the attack frame of a team, which turns when the teams change ends."""
-    ends = Ends(math.copysign(1.0, message.cyan_side)) if message.cyan_side else Ends()
-    return Frame(-ends.side_of(team))
+    return Frame(-Ends.told(message.cyan_side).side_of(team))
 
 
 def game_of(message: game_state_t, team: Team, frame: Frame) -> Game:

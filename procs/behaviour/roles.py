@@ -55,7 +55,7 @@ def assign(view: View, field: Field, presses: bool = False) -> dict[str, Job]:
     attacker = receiver(team, view) or _first_at_ball(team, times_s)
     jobs[attacker.name] = Job(ATTACKER, view.ball.place)
     team.remove(attacker)
-    theirs_s = min((course.meet(other.place, other.velocity_m_s).time_s for other in view.opponents), default=math.inf)
+    theirs_s = opponents_time_s(view, course)
     ours = times_s[attacker.name] <= theirs_s
     pressing_s = _STAY_PRESSING_S if any(robot.role == ATTACKER for robot in team) else 0.0
     if presses and len(team) > 1 and theirs_s < times_s[attacker.name] + pressing_s:
@@ -96,6 +96,11 @@ def time_to_ball_s(robot: Robot, ball: Ball, course: ballistics.Course) -> float
     return (
         0.0 if math.dist(robot.place, ball.place) < _HAS_BALL_M else course.meet(robot.place, robot.velocity_m_s).time_s
     )
+
+
+def opponents_time_s(view: View, course: ballistics.Course) -> float:
+    """Returns the time in which the first opponent meets the ball; infinity without opponents."""
+    return min((course.meet(other.place, other.velocity_m_s).time_s for other in view.opponents), default=math.inf)
 
 
 def _flank(view: View, team: Sequence[Robot]) -> float:

@@ -49,7 +49,7 @@ def _restarts(piece: Piece) -> tuple[list[bool], list[bool]]:
             playing = [robot for robot in truth.robots if robot.name not in game.sent_off]
             middles = {f"{piece.team(robot.name)}{number_in(robot)}": Point(robot.x_m, robot.y_m) for robot in playing}
             restart = Restart(State(game.state), Team(game.state_team), Point(truth.ball_x_m, truth.ball_y_m))
-            ends = Ends(game.cyan_side or -1.0)
+            ends = Ends.told(game.cyan_side)
             distances.append(bool(too_near(restart, middles, ends, piece.measures)))
             if restart.state is State.KICK_OFF:
                 halves.append(bool(in_wrong_half(restart, middles, ends)))

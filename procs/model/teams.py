@@ -1,5 +1,6 @@
 """Teams, and the goals that they defend."""
 
+import math
 from collections.abc import Mapping
 from enum import IntEnum
 from typing import NamedTuple
@@ -25,6 +26,11 @@ class Ends(NamedTuple):
 
     cyan_side: float = -1.0
     """Side of the goal that cyan defends: -1.0 or 1.0."""
+
+    @classmethod
+    def told(cls, cyan_side: float) -> "Ends":
+        """Returns the ends that the message of the referee states; the usual ones if it states none, with 0."""
+        return cls(math.copysign(1.0, cyan_side)) if cyan_side else cls()
 
     def side_of(self, team: Team) -> float:
         """Returns the side of the goal that a team defends; 0.0 for NONE."""

@@ -132,7 +132,7 @@ class RefBoxClient(Component):
             intention_of(belief, heard) if game.state == State.PLAY else state_of(game.state).words,
             [self.messages[robot].value for robot in heard],
             belief,
-            -Ends(game.cyan_side or Ends().cyan_side).side_of(team_number(self.config.team)),
+            -Ends.told(game.cyan_side).side_of(team_number(self.config.team)),
             self.config.robot.radius_m,
             min(ages_s[robot] for robot in heard),
         )

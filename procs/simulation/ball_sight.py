@@ -18,7 +18,7 @@ LEAST_VISIBLE = 0.4
 _LEAST_AREA = 1e-6
 _VISIBLE = (0.37, 0.50, 0.63, 0.75, 0.86, 0.95, 1.0)
 _SPREADS = (1.45, 1.29, 1.18, 1.11, 1.05, 1.025, 1.015)
-"""What is left of a disc behind a straight edge spreads so much further in a picture than a disc of its area."""
+"""Spread of the visible part of a disc behind a straight edge, compared with a disc of its area; by visible share."""
 
 
 @dataclass(frozen=True)

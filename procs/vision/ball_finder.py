@@ -22,11 +22,10 @@ _LEAST_SOLID = 0.5  # of a blob's area must be of the ball's colour; the rest is
 _MOST_SPREAD = 1.6  # mean square distance of a blob's pixels from its middle, compared with a disc's
 _WHOLE_SPREAD = 1.02  # the same of a whole ball in a picture
 _SPREAD_PX2 = 2.0  # what noise adds to that at most, times the square of the radius in the picture
-_HIDDEN_SHARE = (
-    2.6  # relative error of the area of a ball of which a robot hides a part, by what that adds to its spread
-)
+_HIDDEN_SHARE = 2.6
+"""Relative error of the area of a ball that a robot hides in part, divided by what that adds to its spread."""
 _FAINT = 0.15  # pixels covered by the ball to a smaller part than this count as noise
-AREA_PX = 0.2  # relative deviation of an area, times the radius in the picture
+_AREA_PX = 0.2  # relative deviation of an area, times the radius in the picture
 _NEAREST_M = 0.3  # from the viewpoint: nearer is nothing but the robot itself
 IN_THE_AIR = 0.8  # confidence of a ball that flies, as few do
 
@@ -64,7 +63,7 @@ def seems_whole(spread: float, radius_px: float) -> bool:
 
 def area_share(spread: float, radius_px: float) -> float:
     """Returns the relative standard deviation of the area of a ball; see `seems_whole`."""
-    return AREA_PX / radius_px + _HIDDEN_SHARE * max(0.0, spread - _WHOLE_SPREAD)
+    return _AREA_PX / radius_px + _HIDDEN_SHARE * max(0.0, spread - _WHOLE_SPREAD)
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,7 @@ def test_robot_on_the_ball_pushes_it_aside(x_m: float) -> None:
     ],
 )
 def test_robot_on_the_ball_pushes_it_over_no_line(ball: tuple[float, float], robot: tuple[float, float]) -> None:
-    """Otherwise a goal or a throw-in would be that of whoever sets the robot down."""
+    """Setting a robot down neither scores a goal nor gives a throw-in."""
     world = bench()
     world.port("place_ball").put(x_m=ball[0], y_m=ball[1])
     world.iterate(2)
