@@ -1,6 +1,5 @@
 """Failures of components: component, place and reason, in its state and in the log."""
 
-from bdb import BdbQuit
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
@@ -12,6 +11,10 @@ _RESERVED = 4000  # small objects, a quarter of a megabyte together
 
 class ComponentFailedError(Exception):
     """A component failed; the text names the component, the place and the reason."""
+
+
+class DebuggerLeft(BaseException):
+    """The user has left the debugger; like Ctrl-C no `Exception`, so that no code on its way takes it for a failure."""
 
 
 class Failures:
@@ -63,7 +66,7 @@ class Failures:
         Raises:
             ComponentFailedError: always, unless the exception left the debugger or ends the process.
         """
-        if isinstance(error, BdbQuit | KeyboardInterrupt):
+        if isinstance(error, DebuggerLeft | KeyboardInterrupt):
             return
         self.make_room(error)
         frame = own_frame(error)

@@ -1,18 +1,18 @@
 """Runs a host under a debugger: pdb in the terminal of fwk-launch, or debugpy for an editor to attach to."""
 
-import bdb
 import inspect
 import os
 import pdb
 import signal
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 from types import FrameType
 from typing import Any
 
-from fwk.engine.failures import ComponentFailedError
+from fwk.engine.failures import ComponentFailedError, DebuggerLeft
 from fwk.model.plan import ComponentPlan
 
 LEFT = 75
@@ -64,12 +64,12 @@ def debug(
     file, line = first_line_of_loop(request.component)
     debugger = QuietPdb(nosigint=True)
     debugger.begin_at(file, line, lambda component: component.name == request.component.name and ready())
-    signal.signal(signal.SIGINT, lambda _number, frame: debugger.set_trace(frame))
+    signal.signal(signal.SIGINT, debugger.on_interrupt)
     print(f"fwk: {request.component.name} under pdb; it stops at the beginning of loop()", flush=True)
     print(f"fwk: 'c' continues, Ctrl-C stops again, 'q' leaves the debugger and {leaving}", flush=True)
     try:
         debugger.run_quietly(serve)
-    except bdb.BdbQuit:
+    except DebuggerLeft:
         return LEFT
     except ComponentFailedError as failure:
         print(f"fwk: {failure}", flush=True)
@@ -128,7 +128,7 @@ class QuietPdb(pdb.Pdb):
         finally:
             self._silent = False
 
-    def run_quietly(self, work: Callable[[], None]) -> None:
+    def run_quietly(self, work: Callable[[], object]) -> None:
         self.reset()
         self.botframe = sys._getframe()  # no call below this one is stepped into
         self.set_continue()
@@ -141,7 +141,25 @@ class QuietPdb(pdb.Pdb):
 
     def look_back_at(self, error: BaseException) -> None:
         self.reset()
-        self.interaction(None, error.__traceback__)
+        with suppress(DebuggerLeft):
+            self.interaction(None, error.__traceback__)
+
+    def on_interrupt(self, _number: int, frame: FrameType | None) -> None:
+        """Handles Ctrl-C: stops at the next line of the code that runs; at the prompt ends the command that runs."""
+        if self.allow_kbdint:  # type: ignore[attr-defined]
+            raise KeyboardInterrupt
+        sys.settrace(None)  # the debugger does not stop in itself
+        self.set_trace(frame)
+
+    def set_quit(self) -> None:
+        """Leaves the debugger.
+
+        Raises:
+            DebuggerLeft: always. An `Exception`, as pdb raises it, would mean damaged bytes if Ctrl-C stopped in the
+                decoder of a message, and the run would go on without a debugger.
+        """
+        super().set_quit()
+        raise DebuggerLeft
 
     def set_continue(self) -> None:
         """Continues with tracing on, so that Ctrl-C can stop again."""

@@ -2,7 +2,6 @@
 
 import json
 import traceback
-from bdb import BdbQuit
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 
@@ -136,7 +135,7 @@ class Lives:
         try:
             with watching:
                 yield
-        except (BdbQuit, RecordingError):
+        except RecordingError:
             raise
         except ReachesOutsideError as error:
             self.leave_out(component, str(error))

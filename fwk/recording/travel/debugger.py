@@ -12,7 +12,7 @@ from types import CodeType
 from typing import Any
 
 from fwk.component.component import Component
-from fwk.engine.failures import ComponentFailedError
+from fwk.engine.failures import ComponentFailedError, DebuggerLeft
 from fwk.host.debugger import QuietPdb, first_line_of_loop
 from fwk.model.plan import ComponentPlan
 from fwk.recording.travel.snapshots import Snapshot, Snapshots
@@ -133,7 +133,7 @@ class Travel:
                 travel._leave()
 
         self._class.loop = watched
-        signal.signal(signal.SIGINT, lambda _number, frame: self._pdb.set_trace(frame))
+        signal.signal(signal.SIGINT, self._pdb.on_interrupt)
         print(f"fwk: {self._plan.name} under pdb; it stops at the beginning of loop()", flush=True)
         print(
             "fwk: 'c' continues, 'back', 'back N', 'goto TICK', 'until CONDITION' and 'back until CONDITION' travel, "
@@ -145,7 +145,7 @@ class Travel:
             while self._order.before:  # the search reached the end of the recording
                 self._end_search()
             self._end_forward()
-        except bdb.BdbQuit:
+        except DebuggerLeft:
             return LEFT
         except ComponentFailedError as failure:
             sys.settrace(None)
