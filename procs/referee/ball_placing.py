@@ -6,6 +6,7 @@ from procs.model.field import Field, Point
 
 _MISPLACED_M = 0.6  # the crew may have to put the ball beside a robot; further away, a robot has pushed it
 _CREW_S = 0.5  # until the report shows a placement
+_PATIENCE = 2  # pushed balls for which robots get their time anew; more would delay the game
 
 
 class BallPlacing:
@@ -18,17 +19,30 @@ class BallPlacing:
         """Number of the newest placement: with a higher number than before, the crew puts the ball on `spot`."""
         self.left_at: Point | None = None
         """Place of the ball when the game was last stopped."""
+        self.laid_s = 0.0
+        """Time that robots have had for their positions since the ball was put on its spot, or put back."""
         self._since_s = 0.0
+        self._put_back = 0
 
     def place(self, spot: Point) -> None:
         """Has the ball put on the spot."""
         self.spot = spot
         self.number += 1
+        self.laid_s = self._since_s = 0.0
+        self._put_back = 0
+
+    def put_back(self) -> None:
+        """Has the ball that a robot has pushed away put back on its spot."""
+        self.number += 1
         self._since_s = 0.0
+        self._put_back += 1
+        if self._put_back <= _PATIENCE:
+            self.laid_s = 0.0
 
     def pass_time(self, duration_s: float) -> None:
         """Lets time go by since the newest placement."""
         self._since_s += duration_s
+        self.laid_s += duration_s
 
     def is_under_way(self, ball: Point) -> bool:
         """Returns whether the crew has not had the time to put the ball on its spot."""

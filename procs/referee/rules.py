@@ -45,7 +45,10 @@ class Rules(BaseModel):
     stoppage_s: NonNegativeFloat = 3.0
     """From an interruption until the set piece may be taken."""
     positions_s: NonNegativeFloat = 6.0
-    """Longest further wait for robots that are too near to the ball or in the wrong half."""
+    """Longest further wait for robots that are too near to the ball or in the wrong half.
+
+    It begins anew when the ball was pushed off its spot and has been put back, twice at most.
+    """
     ends_s: NonNegativeFloat = 20.0
     """Longest such wait at the beginning of a half, when the robots may have changed ends."""
     set_piece_s: PositiveFloat = 7.0

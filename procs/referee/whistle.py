@@ -62,6 +62,10 @@ class Whistle:
         return self.state is State.FROZEN
 
     @property
+    def _time_is_over(self) -> bool:
+        return not self.shootout and self.time_in_half_s >= halves.length_s(self.half, self.rules)
+
+    @property
     def at_rest(self) -> bool:
         """Whether the match has a break, or has ended."""
         return self.state in (State.HALF_TIME, State.FROZEN)
@@ -102,7 +106,7 @@ class Whistle:
             self._ball.remember(sight.ball, self.rules.field)
         if not self.rules.automatic:
             self._follow(duration_s, sight)
-        elif not self.shootout and self.time_in_half_s >= halves.length_s(self.half, self.rules):
+        elif self._time_is_over and self.state is not State.PENALTY:  # for a penalty the half is prolonged
             self._end_in_time(duration_s, sight)
         elif self.stopped:
             self._wait_for_robots(duration_s, sight)
@@ -238,7 +242,7 @@ class Whistle:
         if self._starting:
             self.start(sight)
         elif self._ball.is_pushed_away(sight.ball):
-            self._ball.place(self.spot)
+            self._ball.put_back()
 
     def _wait_for_robots(self, duration_s: float, sight: Sight) -> None:
         self._guard_ball(duration_s, sight)
@@ -247,13 +251,14 @@ class Whistle:
         waits = self.held or self._starting or self.time_in_state_s < stoppage_s
         if not self.stopped or waits or too_few_robots(sight, self.cards, rules.least_robots):
             return
-        longest_s = stoppage_s + (rules.ends_s if self._changing_ends else rules.positions_s)
-        if self.time_in_state_s >= longest_s or not misplaced_robots(self.restart, sight, self.ends, rules.field):
+        longest_s = rules.ends_s if self._changing_ends else rules.positions_s
+        had_time = self.time_in_state_s >= stoppage_s + longest_s and self._ball.laid_s >= longest_s
+        if had_time or not misplaced_robots(self.restart, sight, self.ends, rules.field):
             self.start(sight)
 
     def _watch(self, duration_s: float, sight: Sight) -> None:
         scene = self._stretch.watch(duration_s, sight, self.ends, self.rules)
-        if self.shootout:
+        if self.shootout or self._time_is_over:
             self._watch_penalty(scene)
         elif any(self._ball_left(event, sight) for event in sight.events):
             return
@@ -313,12 +318,18 @@ class Whistle:
                 self._play(ball)
 
     def _watch_penalty(self, scene: Scene) -> None:
-        """Watches one of the penalties that decide a match."""
+        """Watches a penalty that is one shot: one of those that decide a match, or the last act of a half."""
         if self._repeat(scene):
             return
         scored = penalty_scored(scene, self._stretch, self.restart, self.time_in_state_s)
-        if scored is not None:
+        if scored is None:
+            return
+        if self.shootout:
             self.end_penalty(scored)
+        else:
+            if scored:
+                self.goal(self.team)
+            self.end_half()
 
     def _repeat(self, scene: Scene) -> bool:
         """Has the set piece repeated after a breach, twice at most; returns whether it does."""

@@ -28,6 +28,34 @@ def test_penalty_goal_counts_without_a_second_robot() -> None:
     assert script.score == (1, 0)
 
 
+@pytest.mark.parametrize("scores", [True, False])
+def test_half_is_prolonged_for_a_penalty(scores: bool) -> None:
+    script = penalty()
+    script.whistle.time_in_half_s = script.whistle.rules.half_s
+    script.wait(1.0)
+    assert script.state == (State.PENALTY, CYAN, False)
+    script.touch("cyan2")
+    script.roll(9.0, 0.0)
+    assert script.state == (State.PENALTY, CYAN, False), "the shot is under way"
+    if scores:
+        script.goal(11.2, "cyan2")
+    else:
+        script.touch("cyan3")
+    assert (script.state[0], script.score) == (State.HALF_TIME, (int(scores), 0))
+
+
+def test_half_is_prolonged_until_a_penalty_may_be_shot() -> None:
+    script = Script().playing()
+    script.robots |= BESIDE
+    script.tick(Event(Kind.COLLISION, "magenta2", "cyan3", 9.5, 0.5, 3.5))
+    script.whistle.time_in_half_s = script.whistle.rules.half_s
+    assert script.started().state == (State.PENALTY, CYAN, False)
+    script.wait(9.8)
+    assert script.state == (State.PENALTY, CYAN, False)
+    script.wait(0.4)
+    assert (script.state[0], script.score) == (State.HALF_TIME, (0, 0))
+
+
 def test_penalty_that_is_not_taken_becomes_a_goal_kick() -> None:
     script = penalty()
     script.wait(9.8)

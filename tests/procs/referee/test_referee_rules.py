@@ -193,6 +193,19 @@ def test_set_piece_does_not_wait_forever() -> None:
     assert stopped.index(False) == pytest.approx(60, abs=1)
 
 
+@pytest.mark.parametrize(("pushes", "started_s"), [(1, 4.5), (2, 6.5), (3, 6.5), (9, 6.5)])
+def test_robots_get_new_time_when_the_ball_was_put_back(pushes: int, started_s: float) -> None:
+    referee = Whistle(Rules(kick_off_stoppage_s=1.0, positions_s=2.0))
+    pushed_s = [2.5, 4.5, *(5.1 + 0.55 * more for more in range(7))][:pushes]
+    near = {"magenta2": Point(2.5, 0.0)}
+    time_s = 0.0
+    while referee.stopped:
+        time_s += TICK_S
+        away = any(time_s - TICK_S < at_s <= time_s for at_s in pushed_s)
+        referee.step(TICK_S, Sight(Point(0.9, 0.0) if away else CENTRE, robots=near))
+    assert time_s == pytest.approx(started_s, abs=2 * TICK_S)
+
+
 @pytest.mark.parametrize(
     ("state", "team", "robot", "place", "allowed"),
     [
