@@ -5,6 +5,7 @@ import math
 from procs.model.field import Field, Point
 
 _MISPLACED_M = 0.6  # the crew may have to put the ball beside a robot; further away, a robot has pushed it
+_ROLLS_M_S = 0.2
 _CREW_S = 0.5  # until the report shows a placement
 _PATIENCE = 2  # pushed balls for which robots get their time anew; more would delay the game
 
@@ -21,6 +22,9 @@ class BallPlacing:
         """Place of the ball when the game was last stopped."""
         self.laid_s = 0.0
         """Time that robots have had for their positions since the ball was put on its spot, or put back."""
+        self.rolls = False
+        """Whether the ball has moved since the tick before, because a robot touched it or the crew put it down."""
+        self._before = spot
         self._since_s = 0.0
         self._put_back = 0
 
@@ -39,10 +43,12 @@ class BallPlacing:
         if self._put_back <= _PATIENCE:
             self.laid_s = 0.0
 
-    def pass_time(self, duration_s: float) -> None:
-        """Lets time go by since the newest placement."""
+    def watch(self, duration_s: float, ball: Point) -> None:
+        """Watches the ball in a tick of a stoppage."""
         self._since_s += duration_s
         self.laid_s += duration_s
+        self.rolls = math.dist(ball, self._before) > _ROLLS_M_S * duration_s
+        self._before = ball
 
     def is_under_way(self, ball: Point) -> bool:
         """Returns whether the crew has not had the time to put the ball on its spot."""

@@ -45,7 +45,7 @@ class Rules(BaseModel):
     stoppage_s: NonNegativeFloat = 3.0
     """From an interruption until the set piece may be taken."""
     positions_s: NonNegativeFloat = 6.0
-    """Longest further wait for robots that are too near to the ball or in the wrong half.
+    """Longest further wait for a ball that rolls, and for robots that are too near to it or in the wrong half.
 
     It begins anew when the ball was pushed off its spot and has been put back, twice at most.
     """

@@ -238,7 +238,7 @@ class Whistle:
 
     def _guard_ball(self, duration_s: float, sight: Sight) -> None:
         """Has the ball put back if a robot has pushed it away; starts the game if that was to happen with the ball."""
-        self._ball.pass_time(duration_s)
+        self._ball.watch(duration_s, sight.ball)
         if self._starting:
             self.start(sight)
         elif self._ball.is_pushed_away(sight.ball):
@@ -253,7 +253,8 @@ class Whistle:
             return
         longest_s = rules.ends_s if self._changing_ends else rules.positions_s
         had_time = self.time_in_state_s >= stoppage_s + longest_s and self._ball.laid_s >= longest_s
-        if had_time or not misplaced_robots(self.restart, sight, self.ends, rules.field):
+        ready = not self._ball.rolls and not misplaced_robots(self.restart, sight, self.ends, rules.field)
+        if ready or had_time:
             self.start(sight)
 
     def _watch(self, duration_s: float, sight: Sight) -> None:

@@ -193,6 +193,17 @@ def test_set_piece_does_not_wait_forever() -> None:
     assert stopped.index(False) == pytest.approx(60, abs=1)
 
 
+@pytest.mark.parametrize(("rolls_s", "started_s"), [(0.0, 1.0), (1.5, 1.5), (9.0, 3.0)])
+def test_set_piece_waits_for_a_ball_that_rolls(rolls_s: float, started_s: float) -> None:
+    referee = Whistle(Rules(kick_off_stoppage_s=1.0, positions_s=2.0))
+    ticks = 0
+    while referee.stopped:
+        ticks += 1
+        to_and_fro_m = 0.02 * (ticks % 2) if ticks * TICK_S < rolls_s else 0.0
+        referee.step(TICK_S, Sight(Point(0.0, to_and_fro_m)))
+    assert ticks * TICK_S == pytest.approx(started_s, abs=2 * TICK_S)
+
+
 @pytest.mark.parametrize(("pushes", "started_s"), [(1, 4.5), (2, 6.5), (3, 6.5), (9, 6.5)])
 def test_robots_get_new_time_when_the_ball_was_put_back(pushes: int, started_s: float) -> None:
     referee = Whistle(Rules(kick_off_stoppage_s=1.0, positions_s=2.0))
