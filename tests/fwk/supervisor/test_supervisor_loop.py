@@ -76,6 +76,16 @@ def test_dones_of_other_ticks_do_not_count() -> None:
     assert len(run.records) == tick - 1
 
 
+def test_host_in_a_debugger_does_not_count_as_late() -> None:
+    run = pair("wall")
+    run.begin()
+    run.supervisor._core.hosts[RIGHT].held = True
+    run.does_not_answer.add(RIGHT)
+    run.play(lambda: any("r/right is held by its debugger" in text for text in run.texts))
+    run.play_ticks(3)
+    assert run.supervisor.loop.barrier.late == 0
+
+
 def test_real_time_names_and_reminds_a_late_host() -> None:
     run = pair("wall")
     run.does_not_answer = {RIGHT}
