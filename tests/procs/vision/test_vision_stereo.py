@@ -56,6 +56,14 @@ def test_robot_ahead_is_found_at_its_place(ahead_m: float) -> None:
     assert np.sqrt(np.mean(np.square(errors), axis=0)) == pytest.approx((0.0, 0.0), abs=0.03 + 0.015 * ahead_m**2)
 
 
+def test_pair_that_sees_no_ground_shows_robots() -> None:
+    rig = StereoRig(width_px=800, height_px=80, focal_px=2400.0, baseline_m=0.05)
+    renderer, away_m = StereoRenderer(rig, Field(), Bodies()), 4.0
+    empty = renderer.render(Pose(0.0, 0.0, 0.0), [])
+    assert (empty == empty[0, 0]).all()
+    assert (renderer.render(Pose(0.0, 0.0, 0.0), [(away_m, 0.0)]) != empty).any()
+
+
 @pytest.mark.slow
 def test_stated_covariances_are_those_of_the_errors() -> None:
     surprises = []
