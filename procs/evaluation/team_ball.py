@@ -62,7 +62,7 @@ def _single(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
 def _fusion(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
     """Squared errors of the fused ball beside those of a single robot and of the plain average, by team and tick.
 
-    A ball in the air is left out: the single robot that sees it would be one that takes it for another place.
+    A ball in the air counts, too: the fusion has to tell where it is although single robots take it for another place.
     """
     best: list[tuple[float, float]] = []
     middle: list[tuple[float, float]] = []
