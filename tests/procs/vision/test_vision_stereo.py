@@ -225,6 +225,17 @@ def test_fusion_takes_percepts_of_one_time_only() -> None:
     assert [each.x_m for each in second.obstacles] == [1.0]
 
 
+def test_fusion_joins_obstacles_of_a_slower_pair_once() -> None:
+    bench, counts = Bench(ObstacleFusion), []
+    for frame in range(4):
+        if frame % 2 == 0:
+            bench.port("stereo_obstacles").put(capture_us=bench.time_us + 1, obstacles=[obstacle(2.0, 0.0)])
+        bench.port("obstacle_percepts").put(capture_us=bench.time_us + 1, obstacles=[obstacle(-1.0, 0.0)])
+        bench.iterate()
+        counts.append(bench.port("fused_obstacles").sent[-1].n)
+    assert counts == [2, 1, 2, 1]
+
+
 @pytest.mark.parametrize("swapped", [False, True])
 def test_fusion_joins_the_nearest_first(swapped: bool) -> None:
     """The second detector sees one of two robots that touch, a little beside it."""
