@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from pydantic import Field as Setting
-from pydantic import PositiveFloat
+from pydantic import PositiveFloat, field_validator
 
 from fwk import Clock, Component, Config, Logger, Reads, Writes, channel
 from lcmtypes.soccer import (
@@ -28,7 +28,7 @@ from procs.simulation.gaps import Gaps
 from procs.simulation.line_scan import line_scan
 from procs.simulation.percept_errors import PRESETS
 from procs.simulation.sight import blurred, claimed, hidden, shaken
-from procs.vision.calibration import MirrorConfig
+from procs.vision.calibration import MirrorConfig, below_mirror
 
 _TILT_SHARE = 0.8  # of a tilt by an angle: shift of what is a few metres away, as a part of the mirror's scale
 
@@ -94,6 +94,8 @@ class PerceptsConfig(Config):
     """Largest distance of a ball; it is less where the mirror shows less."""
     most_points: int = Setting(default=150, ge=1, le=10_000)
     """Line points sent at most."""
+
+    _visible = field_validator("ball")(below_mirror)
 
 
 class Percepts(Component):
