@@ -1,8 +1,9 @@
 """Evaluation of a match for `fwk eval`: plays a piece in memory, measures it, and reports all pieces together."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from procs.evaluation.sightings import sightings
 from procs.evaluation.table import MEASURES, Measure, as_csv, as_json, as_text, rate, ratio, root_ratio, rows_of
 from procs.evaluation.team_ball import team_ball
 from procs.model.frames import Floats
+from procs.model.robot import RobotModel
 
 
 def measured(
@@ -30,14 +32,21 @@ def measured(
     Raises:
         ValueError: the piece would have no tick.
     """
-    period_s = launch_plan(file, tuple(sets)).period_us / 1e6
+    plan = launch_plan(file, tuple(sets))
+    period_s = plan.period_us / 1e6
     ticks = round(time_s / period_s)
     if not ticks:
         raise ValueError(f"{time_s:g} s is shorter than a tick of {period_s:g} s")
     system = system_of(file, seed=seed, sets=sets)
     system.tick(ticks)
-    piece = piece_of(system.sent, period_s)
+    robot = _robot_of(each.config for each in plan.components if each.namespace == "world")
+    piece = piece_of(system.sent, period_s, robot)
     return {name: samples.tolist() for name, samples in samples_of(piece).items()}
+
+
+def _robot_of(settings: Iterable[Mapping[str, Any]]) -> RobotModel:
+    """Returns the geometry of robots that one of the components' settings states; the usual one if none does."""
+    return RobotModel(**next((each["robot"] for each in settings if "robot" in each), {}))
 
 
 def samples_of(piece: Piece) -> Samples:

@@ -23,7 +23,7 @@ from lcmtypes.soccer import (
     world_model_t,
 )
 from procs.model.field import Field, field_of
-from procs.model.robot import team_in, team_of
+from procs.model.robot import ROBOT, RobotModel, team_in, team_of
 
 BELIEFS: dict[str, Any] = {
     "world_model": world_model_t,
@@ -56,6 +56,8 @@ class Piece:
     """Robot to the size of all that it told its team."""
     measures: Field = field(default_factory=Field)
     """Field on which it was played."""
+    model: RobotModel = ROBOT
+    """Geometry of the robots that played."""
 
     @cached_property
     def players(self) -> dict[str, true_robot_t]:
@@ -95,9 +97,9 @@ class Piece:
         return {event.robot for each in ticks for event in self.events.get(each, ()) if event.kind in kinds}
 
 
-def piece_of(sent: Mapping[str, Sequence[bytes]], period_s: float) -> Piece:
+def piece_of(sent: Mapping[str, Sequence[bytes]], period_s: float, model: RobotModel = ROBOT) -> Piece:
     """Sorts the messages of a match by tick; `sent` holds the encoded messages of each channel."""
-    piece = Piece(period_s)
+    piece = Piece(period_s, model=model)
     piece.truth = {truth.header.tick: truth for truth in map(ground_truth_t.decode, sent["world/ground_truth"])}
     piece.game = {game.header.tick: game for game in map(game_state_t.decode, sent.get("world/game_state", ()))}
     reports = [match_events_t.decode(data) for data in sent.get("world/match_events", ())]

@@ -9,7 +9,6 @@ from procs.evaluation.beliefs import Samples, flies, placed_ticks
 from procs.evaluation.exposures import frames_of, scene_at
 from procs.evaluation.piece import Piece
 from procs.model.frames import Floats
-from procs.model.robot import ROBOT
 from procs.simulation.sight import hidden
 
 _REACHES_M = (("up to 2.5 m", 0.0, 2.5), ("2.5 to 5 m", 2.5, 5.0), ("5 to 7.5 m", 5.0, 7.5))
@@ -32,7 +31,7 @@ def sightings(piece: Piece) -> Samples:
             continue
         false.append(bool(percept.visible) and not _is_at(percept, scene.ball_m))
         away_m = math.hypot(*scene.ball_m)
-        if hidden(scene.ball_m[None], scene.others_m, ROBOT.radius_m)[0] == 0.0:
+        if hidden(scene.ball_m[None], scene.others_m, piece.model.radius_m)[0] == 0.0:
             seen: list[ball_percept_t | ball_candidate_t] = [percept] if percept.visible else []
             seen += percept.others
             for name, least_m, most_m in _REACHES_M:

@@ -10,6 +10,7 @@ from procs.evaluation.beliefs import MOVING_M_S, NEAR_M, Samples, models_of, pla
 from procs.evaluation.piece import Piece
 from procs.evaluation.poses import START_S
 from procs.model.frames import Floats
+from procs.model.units import US_PER_S
 
 _STALE_S = 0.2  # older sightings of a robot are not averaged
 
@@ -19,8 +20,9 @@ _Sightings = dict[str, dict[int, Floats]]
 
 def team_ball(piece: Piece) -> Samples:
     """Returns the samples of every measure of the ball that concerns a team, or a single sighting."""
-    placed, sightings = placed_ticks(piece), _sightings(piece)
-    return _known(piece) | _single(piece, placed, sightings) | _fusion(piece, placed, sightings)
+    placed = placed_ticks(piece)
+    sightings = _sightings(piece, placed)
+    return _known(piece) | _single(piece, sightings) | _fusion(piece, placed, sightings)
 
 
 def _known(piece: Piece) -> Samples:
@@ -44,14 +46,14 @@ def _known(piece: Piece) -> Samples:
     }
 
 
-def _single(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
+def _single(piece: Piece, sightings: _Sightings) -> Samples:
     """Returns squared errors of the sightings that robots tell, by their own poses, at the time of the exposure."""
     resting: list[float] = []
     moving: list[float] = []
     for seen in sightings.values():
         for tick, (x_m, y_m, distance_m) in seen.items():
             truth = piece.truth.get(tick)
-            if truth is None or tick in placed or tick * piece.period_s < START_S or distance_m > NEAR_M:
+            if truth is None or tick * piece.period_s < START_S or distance_m > NEAR_M:
                 continue
             error_m2 = (x_m - truth.ball_x_m) ** 2 + (y_m - truth.ball_y_m) ** 2
             moves = math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s) >= MOVING_M_S
@@ -62,7 +64,7 @@ def _single(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
 def _fusion(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
     """Squared errors of the fused ball beside those of a single robot and of the plain average, by team and tick.
 
-    A ball in the air is left out: the single robot that sees it would be one that takes it for another place.
+    A ball in the air counts, too: the fusion has to tell where it is although single robots take it for another place.
     """
     best: list[tuple[float, float]] = []
     middle: list[tuple[float, float]] = []
@@ -97,16 +99,15 @@ def _fusion(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
     }
 
 
-def _sightings(piece: Piece) -> _Sightings:
-    found: _Sightings = {}
+def _sightings(piece: Piece, placed: Set[int]) -> _Sightings:
+    """Returns what robots told, without sightings of a ball that the crew was putting down."""
+    found: _Sightings = defaultdict(dict)
     for robot, told in piece.by_robot.get("team_message", {}).items():
-        found[robot] = {
-            round(each.ball_capture_us / 1e6 / piece.period_s): np.array(
-                (each.ball_x_m, each.ball_y_m, each.ball_distance_m)
-            )
-            for each in told.values()
-            if each.ball_visible
-        }
+        for each in told.values():
+            exposed = each.ball_capture_us / US_PER_S / piece.period_s  # in ticks
+            around = {math.floor(exposed + 1e-6), math.ceil(exposed - 1e-6)}
+            if each.ball_visible and not around & placed:
+                found[robot][round(exposed)] = np.array((each.ball_x_m, each.ball_y_m, each.ball_distance_m))
     return found
 
 

@@ -8,6 +8,8 @@ from procs.evaluation.plots import plot
 from procs.evaluation.table import Row, as_csv, as_json, as_text, wilson
 from procs.scenarios.scenario import BOOK, outcome, read
 
+INPUTS = sorted(BOOK.glob("*.yaml"))
+"""Files on which results depend besides modules."""
 ALL = "all scenarios"
 """Name of the row that counts every scenario."""
 

@@ -5,6 +5,7 @@ import math
 import cv2
 import numpy as np
 from pydantic import Field as Setting
+from pydantic import field_validator
 
 from fwk import Clock, Component, Config, Logger, Reads, VisionMaster, channel
 from lcmtypes.soccer import ground_truth_t, true_robot_t
@@ -20,7 +21,7 @@ from procs.simulation.rendering.carpet import Wear
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.sensor_noise import SensorNoise
 from procs.simulation.rendering.shapes import Bodies
-from procs.vision.calibration import MirrorConfig
+from procs.vision.calibration import MirrorConfig, below_mirror
 from procs.vision.colours import BLACK, COLOURS
 
 
@@ -69,6 +70,8 @@ class CameraConfig(Config):
     """Geometry of all robots."""
     ball: BallModel = BALL
     """Size of the ball."""
+
+    _visible = field_validator("ball")(below_mirror)
 
 
 class Camera(Component):

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from pydantic import Field as Setting
-from pydantic import PositiveFloat
+from pydantic import PositiveFloat, field_validator
 
 from fwk import Clock, Component, Config, Logger, Reads, Writes, channel
 from lcmtypes.soccer import (
@@ -27,8 +27,8 @@ from procs.simulation.delayed_truth import DelayedTruth
 from procs.simulation.gaps import Gaps
 from procs.simulation.line_scan import line_scan
 from procs.simulation.percept_errors import PRESETS
-from procs.simulation.sight import blurred, claimed, hidden, shaken
-from procs.vision.calibration import MirrorConfig
+from procs.simulation.sight import blurred, claimed, glimpse_of, hidden, shaken
+from procs.vision.calibration import MirrorConfig, below_mirror
 
 _TILT_SHARE = 0.8  # of a tilt by an angle: shift of what is a few metres away, as a part of the mirror's scale
 
@@ -94,6 +94,8 @@ class PerceptsConfig(Config):
     """Largest distance of a ball; it is less where the mirror shows less."""
     most_points: int = Setting(default=150, ge=1, le=10_000)
     """Line points sent at most."""
+
+    _visible = field_validator("ball")(below_mirror)
 
 
 class Percepts(Component):
@@ -166,9 +168,11 @@ class Percepts(Component):
         phantom, direction, distance = self.rng.random(3)
         if plausible(truth.ball_x_m, truth.ball_y_m, truth.ball_z_m) and missed >= errors.ball_missed:
             at_m = _seen_from(own, np.array([(truth.ball_x_m, truth.ball_y_m)]))
-            hidden_part = float(hidden(at_m, robots_m, self.config.robot.radius_m)[0])
-            covered = 0.0 if truth.ball_z_m > self.config.robot.height_m else hidden_part
-            percept = self._ball_sight.found(at_m, truth.ball_z_m, 1.0 - covered, shake_px, noise)
+            robot, radius_m = self.config.robot, self.config.ball.radius_m
+            bodies_m = robots_m if truth.ball_z_m <= robot.height_m else robots_m[:0]
+            visible, aside_m = glimpse_of(at_m[0], radius_m, bodies_m, robot.radius_m)
+            seen_m = at_m + aside_m / max(float(np.hypot(*at_m[0])), radius_m) * np.array(((-at_m[0, 1], at_m[0, 0]),))
+            percept = self._ball_sight.found(seen_m, truth.ball_z_m, visible, shake_px, noise)
         if phantom < -math.expm1(-errors.ball_phantoms_1_s * passed_s):
             range_m, angle_rad = 0.5 + distance * (self._ball_reach_m - 0.5), direction * math.tau
             x_m, y_m = range_m * math.cos(angle_rad), range_m * math.sin(angle_rad)

@@ -1,6 +1,7 @@
 """Visible part of the truth for a robot: bodies hide everything behind them."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,6 +28,49 @@ def hidden(points_m: Floats, bodies_m: Floats, radius_m: float) -> Floats:
     behind = (along_m > 0) & (along_m < range_m[:, None] - radius_m)
     cover = np.clip((radius_m - beside_m) / radius_m, 0.0, 1.0)
     return np.asarray(np.where(behind, np.minimum(1.0, 2 * cover), 0.0).max(axis=1))
+
+
+class Glimpse(NamedTuple):
+    """What round bodies leave to see of a ball."""
+
+    visible: float
+    """Part (0..1) of its disc."""
+    aside_m: float
+    """Middle of that part, to the left of the ball's own."""
+
+
+def glimpse_of(ball_m: Floats, ball_radius_m: float, bodies_m: Floats, body_radius_m: float) -> Glimpse:
+    """Returns what is seen of a ball (2) behind upright bodies (k, 2), in the frame of the robot that looks."""
+    range_m = max(math.hypot(*ball_m), 1e-6)
+    ahead_x, ahead_y = (ball_m / range_m).tolist()
+    half_rad = math.asin(min(1.0, ball_radius_m / range_m))
+    covered = []  # from right to left, in radii of the ball
+    for x_m, y_m in bodies_m.tolist():
+        along_m, left_m = ahead_x * x_m + ahead_y * y_m, ahead_x * y_m - ahead_y * x_m
+        if 0.0 < along_m < range_m - body_radius_m:
+            middle_rad, side_rad = (
+                math.atan2(left_m, along_m),
+                math.asin(min(1.0, body_radius_m / math.hypot(x_m, y_m))),
+            )
+            covered.append(((middle_rad - side_rad) / half_rad, (middle_rad + side_rad) / half_rad))
+    visible, moment, begin = 0.0, 0.0, -1.0
+    for first, last in (*sorted(covered), (1.0, 1.0)):
+        end = min(1.0, first)
+        if end > begin:
+            visible += _disc_area(end) - _disc_area(begin)
+            moment += _disc_moment(end) - _disc_moment(begin)
+        begin = max(begin, last)
+    return Glimpse(visible, ball_radius_m * moment / visible if visible else 0.0)
+
+
+def _disc_area(x: float) -> float:
+    """Returns the part of the unit disc's area to the right of a vertical line, between -1 and 1."""
+    return 0.5 + (x * math.sqrt(1.0 - x * x) + math.asin(x)) / math.pi
+
+
+def _disc_moment(x: float) -> float:
+    """Returns the mean of the horizontal place over the same part, weighted by its area."""
+    return -2.0 / (3.0 * math.pi) * math.pow(1.0 - x * x, 1.5)
 
 
 def blurred(mirror: Mirror, points_m: Floats, along_px: Floats, across_px: Floats) -> Floats:

@@ -40,7 +40,6 @@ from procs.simulation.physics.world import World
 Starts = dict[str, tuple[float, float, float]]
 _STOPPED: Wheels = (0.0, 0.0, 0.0)
 _BATTERY_US = US_PER_S  # from one message about the batteries to the next
-_LEAST_PERIOD_S, _MOST_PERIOD_S = 0.001, 10.0
 _FIELD_TICKS = 100  # from one message with the measures of the field to the next, for readers that come late
 
 
@@ -63,19 +62,10 @@ class SimulatorConfig(Config):
     """Errors and delays that differ from those of the preset, by name: `{drive_delay_s: 0.1}`."""
     starts: Starts = Setting({}, frozen=True)
     """Starts of the robots: name to x in m, y in m and heading in rad (world frame); others take the default place."""
-    period_s: float = Setting(0.0, ge=0.0, frozen=True)
-    """Logical time of a tick; 0: the system's."""
     command_timeout_s: PositiveFloat = 0.25
     """Wheels and ball handling stop when their command is older, and older than the previous tick."""
     stuck_wheels: dict[str, tuple[Literal[1, 2, 3], ...]] = {}
     """Faults: wheels that do not turn, by robot: `{cyan3: [2]}`."""
-
-    @field_validator("period_s")
-    @classmethod
-    def _a_period(cls, period_s: float) -> float:
-        if period_s and not _LEAST_PERIOD_S <= period_s <= _MOST_PERIOD_S:
-            raise ValueError(f"it should be 0, or from {_LEAST_PERIOD_S:g} to {_MOST_PERIOD_S:g}")
-        return period_s
 
     @field_validator("ball")
     @classmethod
@@ -156,7 +146,6 @@ class Simulator(Component):
         self._crew = FieldCrew(self._world, config.field)
         self._encoders = {robot: Encoders(noise, self.rng) for robot in robots}
         self._imus = {robot: Imu(noise, self.rng) for robot in robots}
-        self._period_us = round(config.period_s * US_PER_S) or self.clock.period_us
         self._before_us = -1
         self._battery_us = -_BATTERY_US  # the first message is due at once
         self._empty: set[str] = set()  # robots whose motors stand because their batteries are empty
@@ -171,9 +160,9 @@ class Simulator(Component):
 
     def loop(self) -> None:
         now_us = self.clock.now_us
-        passed_us = self._period_us if self._before_us < 0 else max(0, now_us - self._before_us)
+        passed_us = self.clock.period_us if self._before_us < 0 else max(0, now_us - self._before_us)
         self._before_us = now_us
-        self.time_source.next_us = now_us + self._period_us
+        self.time_source.next_us = now_us + self.clock.period_us
         self._place_ball()
         self._crew.carry_out(self.place_robot, self.place_ball, self.freeze, self.reset)
         events: list[Event] = []
@@ -246,7 +235,7 @@ class Simulator(Component):
 
     def _is_fresh(self, reader: Reads[wheel_command_t] | Reads[kicker_drive_t]) -> bool:
         age_s = self.clock.since_s(reader.header.time_us)
-        return reader.has_value and age_s <= max(self.config.command_timeout_s, self._period_us / US_PER_S)
+        return reader.has_value and age_s <= max(self.config.command_timeout_s, self.clock.period_s)
 
     def _sense(self, passed_s: float) -> None:
         # All sensors are read, with or without a reader: readers must not change the random numbers.

@@ -2,9 +2,10 @@
 
 import math
 
-from pydantic import Field
+from pydantic import Field, ValidationInfo
 
 from fwk import Config
+from procs.model.ball import BallModel
 from procs.vision.colours import Picture
 from procs.vision.framing import central_part, scaled
 from procs.vision.mirror import Mirror
@@ -42,3 +43,13 @@ class MirrorConfig(Config):
             roll_rad=math.radians(roll_deg),
             pitch_rad=math.radians(pitch_deg),
         )
+
+
+def below_mirror(ball: BallModel, info: ValidationInfo) -> BallModel:
+    """Refuses a setting `ball` that reaches up to the mirror, which has been checked before."""
+    mirror: MirrorConfig | None = info.data.get("mirror")
+    if mirror is not None and 2 * ball.radius_m >= mirror.height_m:
+        raise ValueError(
+            f"a ball of {2 * ball.radius_m:g} m reaches up to the mirror, which is {mirror.height_m:g} m high"
+        )
+    return ball

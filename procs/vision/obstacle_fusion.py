@@ -42,16 +42,22 @@ class ObstacleFusion(Component):
     config: ObstacleFusionConfig
     clock: Clock
 
+    def init(self) -> None:
+        self._published = 0  # number of the newest message of the pair whose obstacles were published
+
     def loop(self) -> None:
         if not self.obstacle_percepts.refreshed:
             if self.stereo_obstacles.refreshed and self._is_alone():
                 alone = self.stereo_obstacles.value
+                self._published = self.stereo_obstacles.header.sequence
                 self._publish(alone.capture_us, joined([], alone.obstacles, self._same_m))
             return
         around, ahead = self.obstacle_percepts.value, self.stereo_obstacles.value
-        together = self.stereo_obstacles.has_value and (
-            abs(ahead.capture_us - around.capture_us) <= self.config.apart_s * US_PER_S
-        )
+        number = self.stereo_obstacles.header.sequence
+        at_once = abs(ahead.capture_us - around.capture_us) <= self.config.apart_s * US_PER_S
+        together = self.stereo_obstacles.has_value and number != self._published and at_once
+        if together:
+            self._published = number
         found = joined(around.obstacles, ahead.obstacles if together else [], self._same_m)
         self._publish(around.capture_us, found)
 

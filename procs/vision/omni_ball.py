@@ -8,6 +8,7 @@ from lcmtypes.soccer import ball_candidate_t, ball_percept_t
 from procs.model.ball import BALL, BallModel
 from procs.model.expected_errors import EXPECTED
 from procs.vision.ball_finder import BallFinder, BallSighting
+from procs.vision.calibration import below_mirror
 from procs.vision.colours import ColourRange, Hsv, Picture, not_below
 from procs.vision.detector import Detector, DetectorConfig
 
@@ -29,6 +30,7 @@ class OmniBallConfig(DetectorConfig):
     """Largest distance of a ball."""
 
     _possible = field_validator("ball_high")(not_below)
+    _visible = field_validator("ball")(below_mirror)
 
 
 class OmniBall(Detector):

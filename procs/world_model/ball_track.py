@@ -52,6 +52,7 @@ class Walls:
     goal_x_m: float
     """Place of the posts along the field."""
     goal_half_width_m: float
+    goal_height_m: float
 
     @classmethod
     def of(cls, field: Field, ball: BallModel) -> "Walls":
@@ -62,17 +63,24 @@ class Walls:
             net_x_m=field.half_length_m + field.goal_depth_m - ball.radius_m,
             goal_x_m=field.half_length_m,
             goal_half_width_m=field.goal_width_m / 2,
+            goal_height_m=field.goal_height_m,
         )
 
-    def contain(self, ball: BallFilter) -> None:
-        """Lets a ball beyond the walls bounce off them."""
+    def behind_net(self, ball: BallFilter, radius_m: float) -> bool:
+        """Returns whether a ball of that radius is between the back of a goal and the wall."""
+        back_m = self.net_x_m + radius_m
+        return not ball.surely_within(back_m, math.inf) and abs(float(ball.state[0])) > back_m
+
+    def contain(self, ball: BallFilter, nets: bool) -> None:
+        """Lets a ball beyond the walls bounce off them; `nets` of goals are in the way of one that comes from the field
+        and does not fly over them."""
         x_limit_m, y_limit_m = self.goal_x_m - _INSIDE_M, self.y_m - _INSIDE_M
         if ball.surely_within(x_limit_m, y_limit_m):
             return
         x_m, y_m, *_ = map(abs, ball.state.tolist())
         if x_m < x_limit_m and y_m < y_limit_m:
             return
-        in_goal = y_m < self.goal_half_width_m
+        in_goal = nets and y_m < self.goal_half_width_m
         ball.stay_within(self.net_x_m if in_goal else self.x_m, self.y_m, _NET_BOUNCE if in_goal else _WALL_BOUNCE)
 
     def near(self, ball: BallFilter, duration_s: float) -> bool:
@@ -158,12 +166,14 @@ class BallTrack:
     def _advance(self, duration_s: float, step: Step) -> None:
         """Moves a known ball on."""
         assert self.filter is not None
-        grounded_s = duration_s
+        grounded_s, walls = duration_s, step.walls
+        behind = walls is not None and walls.behind_net(self.filter, self.ball.radius_m)
         if self.flight is not None:
             self.flight, grounded_s = self.flight.moved(duration_s, self.ball)
         self.filter.predict(duration_s, step.rolling_m_s2, step.contact, grounded_s)
-        if step.walls is not None:
-            step.walls.contain(self.filter)
+        if walls is not None:
+            over = self.flight is not None and self.flight.height_m > walls.goal_height_m
+            walls.contain(self.filter, nets=not (behind or over))
 
     def see(self, sighting: Sighting, others: Sequence[Sighting] = ()) -> None:
         """Takes a sighting that was captured at the time of the track.

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,7 +15,22 @@ from procs.world_model.seen import Seen
 from procs.world_model.team import Mate, PlaceRow
 
 _FASTEST = (8.0, 8.0, 15.0)  # m/s, m/s, rad/s: a pose that changes faster was corrected
+_TRAIL_S = 0.5  # as old as the oldest sightings that count
 _ROLLS_IN_M_S = 0.5  # a slower ball is as good as held
+
+
+class _Past(NamedTuple):
+    """A pose some time ago."""
+
+    age_s: float
+    pose: Floats
+    """(3)."""
+    rates: Floats
+    """(3): its change in a second, in the tick that led to it."""
+
+    def older(self, by_s: float) -> "_Past":
+        """Returns the same a while later."""
+        return self._replace(age_s=self.age_s + by_s)
 
 
 class OwnView:
@@ -48,11 +64,14 @@ class OwnView:
         self.velocity_m_s = rotation(float(self.pose[2])) @ velocity_m_s
         self.omega_rad_s = odometry.omega_rad_s if moves else 0.0
         rates: tuple[float, float, float] = (*self.velocity_m_s.tolist(), self.omega_rad_s)
+        former: tuple[_Past, ...] = ()
         if before is not None and before.localized and self.localized and passed_s > 0.0:
             turned = _rates(before.pose, self.pose, passed_s)
             if all(abs(rate) < fastest for rate, fastest in zip(turned, _FASTEST, strict=True)):
                 rates, self.omega_rad_s = turned, turned[2]
-        self._rates = np.array(rates)  # of the pose (3)
+                former = tuple(past.older(passed_s) for past in before.trail if past.age_s + passed_s <= _TRAIL_S)
+        self.trail: tuple[_Past, ...] = (_Past(0.0, self.pose, np.array(rates)), *former)
+        """This pose and those before it, the newest first, back to one that was corrected."""
         self._shake = 1.0 + (shake_s_m * float(np.hypot(*self.velocity_m_s))) ** 2
 
     def ball(self, percept: ball_percept_t, age_s: float) -> Seen:
@@ -141,7 +160,8 @@ class OwnView:
 
     def _at(self, age_s: float) -> Floats:
         """Returns the pose (3) at an exposure `age_s` ago."""
-        return self.pose - age_s * self._rates
+        past = next((each for each in reversed(self.trail) if each.age_s <= age_s), self.trail[0])
+        return past.pose - (age_s - past.age_s) * past.rates
 
     def _from_here(self, seen: Seen, age_s: float) -> Seen:
         pose = self._at(age_s)

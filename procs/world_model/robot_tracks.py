@@ -12,6 +12,7 @@ import numpy as np
 
 from procs.model.estimation import linear_sum_assignment
 from procs.model.frames import Flags, Floats, Indices
+from procs.model.robot import ROBOT
 from procs.world_model.batch import Innovation, corrected, innovation_of, inverted, places_at, seen_at
 from procs.world_model.team import PlaceRow
 
@@ -22,7 +23,7 @@ _NOISE_M2_S3 = 0.1  # spectral density of accelerations that do not last
 _UNKNOWN_SPEED_M_S = 1.5
 _GATE = 9.2  # chi-square, 2 degrees of freedom, 99 %
 _FARTHEST_M = 1.5
-_SAME_M = 0.45  # robots are 0.5 m wide
+_SAME = 0.9  # of the width of a robot: the middles of two robots are further apart
 _AXES = np.arange(_STATES)
 _NONE: Indices = np.zeros(0, np.intp)
 
@@ -31,6 +32,8 @@ class RobotTracks:
     """n tracks of position and velocity in the world frame."""
 
     def __init__(self) -> None:
+        self.robot_width_m = 2 * ROBOT.radius_m
+        """Width of a robot."""
         self._x: Floats = np.zeros((0, _STATES))  # x, y (m), vx, vy (m/s), ax, ay (m/s²)
         self._p: Floats = np.zeros((0, _STATES, _STATES))
         self.ages_s: Floats = np.zeros(0)
@@ -127,15 +130,15 @@ class RobotTracks:
 
     def _join(self) -> None:
         """Drops the less seen of two tracks in one place; of equals, the younger."""
-        places_m = self._x[:, :2].tolist()
+        places_m, same_m2 = self._x[:, :2].tolist(), (_SAME * self.robot_width_m) ** 2
         if not any(
-            (x_m - other_x_m) * (x_m - other_x_m) + (y_m - other_y_m) * (y_m - other_y_m) < _SAME_M**2
+            (x_m - other_x_m) * (x_m - other_x_m) + (y_m - other_y_m) * (y_m - other_y_m) < same_m2
             for track, (x_m, y_m) in enumerate(places_m)
             for other_x_m, other_y_m in places_m[:track]
         ):
             return
         apart_m = self.states[:, None, :2] - self.states[None, :, :2]
-        same = (apart_m**2).sum(axis=2) < _SAME_M**2
+        same = (apart_m**2).sum(axis=2) < same_m2
         kept = np.zeros(len(self), dtype=bool)
         for track in np.argsort(-self._sightings, kind="stable"):
             kept[track] = not (same[track] & kept).any()

@@ -111,9 +111,9 @@ class WorldModel(Component):
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
         self._ball = BallTracker(self.config.ball)
-        self._apply_settings()
         self._opponents = RobotTracks()
         self._silent = RobotTracks()  # mates that do not tell their places
+        self._apply_settings()
         self._team = Team()
         self._view: OwnView | None = None
         self._held = self._holds = False
@@ -161,6 +161,7 @@ class WorldModel(Component):
             self._ball = BallTracker(self.config.ball)  # another ball, which no robot has seen yet
         self._walls = Walls.of(self.config.field, self.config.ball)
         self._rules = self._opponent_settings()
+        self._opponents.robot_width_m = self._silent.robot_width_m = 2 * self.config.robot.radius_m
         player = player_of(self._robot, self.config.players)
         self._own_team = TEAM_NUMBERS[player.team] if player else 0
         self._mouth_m = self.config.robot.held_ball_m(self.config.ball)  # from the robot's middle to a held ball's

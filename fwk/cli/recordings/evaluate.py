@@ -71,7 +71,8 @@ def eval(  # noqa: A001 - the name of the command
     work = Evaluation(plan.evaluation, plan.folders, tuple(sets or ()), modules if cluster else {})
     try:
         with _refused_by(folder):
-            campaign = Campaign(folder, about | ({"sets": sets} if sets else {}), _short(sorted(modules.items())))
+            code = _short(sorted((modules | _inputs(plan)).items()))
+            campaign = Campaign(folder, about | ({"sets": sets} if sets else {}), code)
             former = campaign.of_other_code(numbers)
         if former:
             typer.echo(f"note: {_formerly(former)}; remove their files from {folder} to play them again", err=True)
@@ -142,6 +143,13 @@ def _modules(plan: Plan) -> dict[str, str]:
     with suppress(ImportError):  # the runs say so
         import_module(plan.evaluation.partition(":")[0])
     return {name: module.sha256 for name, module in imported_modules(used, plan.folders).items()}
+
+
+def _inputs(plan: Plan) -> dict[str, str]:
+    """Returns the hashes of the files that the module of the evaluation names in `INPUTS`."""
+    module = sys.modules.get(plan.evaluation.partition(":")[0])
+    files: Sequence[Path] = getattr(module, "INPUTS", ())
+    return {str(file): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
 
 
 def _formerly(seeds: Sequence[int]) -> str:

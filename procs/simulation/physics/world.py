@@ -9,6 +9,7 @@ import pymunk
 from procs.model.ball import BALL, BallModel
 from procs.model.events import Event, Kind
 from procs.model.field import Field, Point
+from procs.model.geometry import clamp
 from procs.model.robot import PLAYERS, ROBOT, Player, RobotModel
 from procs.simulation.physics.arena import build_arena
 from procs.simulation.physics.ball_body import GRAVITY_M_S2, Ball
@@ -76,6 +77,8 @@ class World:
         friction_scale = 1.0 + noise.friction_spread * rng.uniform(-1.0, 1.0)
         self.ball = Ball(self._space, ball, friction_scale, robot.height_m, self._field.goal_height_m)
         self._room = Room(self._field)
+        border_m = self._field.border_m
+        self._walls_m = Point(self._field.half_length_m + border_m, self._field.half_width_m + border_m)
         self._clearance_m = robot.radius_m + ball.radius_m + _FREE_M
         self._bar = Crossbar(self._field, self.ball, self._physics.contacts.post_bounce)
         self.robots: dict[str, Robot] = {}
@@ -225,7 +228,7 @@ class World:
         self._space.step(duration_s)
         fallen_on = self._tops.fall(duration_s)
         states = self._bodies.states()
-        if self._bar.stops(*states[0][:2]):
+        if self._bar.stops(*states[0][:2]) or self._walls_stop(*states[0][:2]):
             states = self._bodies.states()
         touching = self._contacts.take_touches() | pushes.keys()
         if fallen_on is not None:
@@ -253,6 +256,18 @@ class World:
         self.ball.rub(duration_s, vx_m_s, vy_m_s, omega_rad_s)
         speed_m_s = math.hypot(vx_m_s, vy_m_s)
         return [Event(Kind.KICK, name, "", x_m, y_m, speed_m_s) for name, push in pushes.items() if push.kicked]
+
+    def _walls_stop(self, x_m: float, y_m: float) -> bool:
+        """Puts a ball back to the wall in which its middle is: robots squeeze a light one through, and a very fast one
+        is on the other side after a step."""
+        if abs(x_m) <= self._walls_m.x_m and abs(y_m) <= self._walls_m.y_m:
+            return False
+        at_m, way_m_s = [], []
+        for place_m, speed_m_s, wall_m in zip((x_m, y_m), self.ball.body.velocity, self._walls_m, strict=True):
+            at_m.append(clamp(place_m, self.ball.radius_m - wall_m, wall_m - self.ball.radius_m))
+            way_m_s.append(0.0 if abs(place_m) > wall_m else speed_m_s)
+        self.ball.body.position, self.ball.body.velocity = (at_m[0], at_m[1]), (way_m_s[0], way_m_s[1])
+        return True
 
     def _ball_event(self, kind: Kind, robot: str) -> Event:
         return Event(kind, robot, "", *self.ball.body.position, self.ball.speed_m_s)

@@ -42,18 +42,24 @@ class StereoRenderer:
         x_m = own.x_m + cosine * rig.forward_m - sine * left_m
         y_m = own.y_m + sine * rig.forward_m + cosine * left_m
         frame = np.full((rig.height_px, rig.width_px), _SKY, np.uint8)
-        ahead_m = self._ground_m[:, None]
-        aside_m = -rig.columns[None] * ahead_m
-        column = (x_m + cosine * ahead_m - sine * aside_m) / self._scale_m + self._origin_px[0]
-        row = (y_m + sine * ahead_m + cosine * aside_m) / self._scale_m + self._origin_px[1]
-        frame[self._ground_rows] = cv2.remap(
-            self._grey, column.astype(np.float32), row.astype(np.float32), cv2.INTER_NEAREST, borderValue=(_SKY - 60,)
-        )
+        if len(self._ground_m):
+            frame[self._ground_rows] = self._ground(x_m, y_m, cosine, sine)
         depth_m = np.full(rig.width_px, np.inf)
         for other_x_m, other_y_m in robots_m:
             dx, dy = other_x_m - x_m, other_y_m - y_m
             self._paint(frame, depth_m, cosine * dx + sine * dy, cosine * dy - sine * dx)
         return frame
+
+    def _ground(self, x_m: float, y_m: float, cosine: float, sine: float) -> Grey:
+        """Returns the rows that see the ground, for a camera at a place of the world that looks along a direction."""
+        ahead_m = self._ground_m[:, None]
+        aside_m = -self._rig.columns[None] * ahead_m
+        column = (x_m + cosine * ahead_m - sine * aside_m) / self._scale_m + self._origin_px[0]
+        row = (y_m + sine * ahead_m + cosine * aside_m) / self._scale_m + self._origin_px[1]
+        ground = cv2.remap(
+            self._grey, column.astype(np.float32), row.astype(np.float32), cv2.INTER_NEAREST, borderValue=(_SKY - 60,)
+        )
+        return np.asarray(ground, np.uint8)
 
     def _paint(self, frame: Grey, depth_m: Floats, ahead_m: float, left_m: float) -> None:
         """Paints one robot where it is nearer than `depth_m` (columns), which it changes."""

@@ -16,6 +16,7 @@ import pytest
 from fwk.cli.recordings import evaluate
 from fwk.testing.campaign import Campaign, FolderError
 from fwk.testing.executors import CampaignError
+from tests.fwk.cli import cli_eval_parts
 from tests.fwk.cli.cli_eval_parts import measured
 from tests.fwk.cli.cli_eval_tools import LAUNCH, Queue, evaluated
 
@@ -296,6 +297,17 @@ def test_two_evaluations_do_not_share_a_folder(launch: Path) -> None:
         assert (code, table) == (1, "")
         assert "error: another evaluation is playing into eval-it; wait until it has ended, or" in said
     assert evaluated(str(launch), "--seeds", "1", "--jobs", "1")[0] == 0
+
+
+def test_results_of_changed_input_files_are_named(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = launch.with_name("scene.yaml")
+    scene.write_text("ball: 1")
+    monkeypatch.setattr(cli_eval_parts, "INPUTS", [scene], raising=False)
+    words = (str(launch), "--jobs", "1", "--seeds", "1")
+    assert "former code" not in evaluated(*words)[2]
+    assert "former code" not in evaluated(*words)[2]
+    scene.write_text("ball: 2")
+    assert "note: the result of seed 1 is of former code;" in evaluated(*words)[2]
 
 
 def test_results_of_former_code_are_named(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:

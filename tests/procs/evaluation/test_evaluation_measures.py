@@ -150,6 +150,24 @@ def test_single_sightings_count_at_their_exposure_within_4_m() -> None:
     assert rows["one sighting, ball resting"] == pytest.approx(0.1)
 
 
+def test_sighting_while_the_crew_moves_the_ball_is_left_out() -> None:
+    """A camera that exposes between two ticks shows a ball that was placed elsewhere at its new place."""
+    made = piece([robot("cyan1", 0.0, 1.0)], vx_m_s=0.0)
+    for tick in range(FIRST + 10, FIRST + 40):
+        made.truth[tick].ball_x_m = 3.0
+    made.by_robot["world_model"] = {
+        "cyan1": {tick: model((truth.ball_x_m, 0.05)) for tick, truth in made.truth.items()}
+    }
+    told = made.by_robot["team_message"] = {"cyan1": {}}
+    for tick in range(FIRST, FIRST + 39):
+        each = told["cyan1"][tick + 2] = team_message_t()
+        each.ball_visible, each.ball_capture_us = True, tick * 50_000 + 10_000
+        each.ball_x_m, each.ball_y_m = made.truth[tick + 1].ball_x_m, 0.1
+    rows = {row.name: row.value for row in rows_of([samples_of(made)])}
+    assert rows["one sighting, ball resting"] == pytest.approx(0.1)
+    assert rows["fused to best single"] == rows["fused to median robot"] == pytest.approx(0.5)
+
+
 def test_ball_that_one_robot_knows_is_known_to_its_team() -> None:
     made = piece([robot("cyan1", 0.0, 1.0), robot("cyan2", 0.0, 3.0)])
     models = {name: {tick: model((0.0, 0.0)) for tick in made.truth} for name in ("cyan1", "cyan2")}

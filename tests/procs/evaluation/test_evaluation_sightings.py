@@ -18,6 +18,7 @@ from procs.evaluation.exposures import frames_of, pose_at, pose_between, scene_a
 from procs.evaluation.innovations import innovations
 from procs.evaluation.piece import Piece
 from procs.evaluation.sightings import sightings
+from procs.model.robot import RobotModel
 
 PERIOD_S, FIRST, COUNT = 0.05, 100, 40
 TICKS = range(FIRST, FIRST + COUNT)
@@ -70,6 +71,14 @@ def test_hidden_ball_need_not_be_found() -> None:
         "balls that do not exist, a frame": 0.0,
     }
     assert shares(piece_with((1.0, 3.0), blind, rival=rival)) == {"balls that do not exist, a frame": 0.0}
+
+
+def test_ball_beside_a_slim_robot_has_to_be_found() -> None:
+    rival, blind = true_robot_t(name="magenta1", x_m=1.2, y_m=1.5), ball_percept_t(visible=False)
+    made = piece_with((1.0, 3.0), blind, rival=rival)
+    assert "ball found in a frame, 2.5 to 5 m" not in shares(made)
+    made.model = RobotModel(radius_m=0.15)
+    assert shares(made)["ball found in a frame, 2.5 to 5 m"] == 0.0
 
 
 def test_ball_in_the_air_is_not_counted() -> None:

@@ -221,6 +221,18 @@ def test_wall_keeps_the_hardest_shot_in() -> None:
         assert abs(world.ball.body.position.y) < 8.0
 
 
+def test_ball_of_any_speed_stays_between_the_walls() -> None:
+    world = world_with()
+    for velocity in ((300.0, 0.0), (-200.0, 250.0)):
+        world.ball.put(9.0, 3.0)
+        shoot(world, *velocity)
+        for _ in range(20):
+            world.advance(TICK_US)
+            x_m, y_m = world.ball.body.position
+            assert abs(x_m) < 11.9
+            assert abs(y_m) < 7.9
+
+
 def test_collision_names_the_faster_robot_first() -> None:
     world = world_with(cyan1=Pose(0.0, 0.0, 0.0), magenta1=Pose(1.0, 0.0, math.pi))
     collisions = []

@@ -16,6 +16,7 @@ from procs.model.field import Field
 from procs.simulation.camera import Camera
 from procs.simulation.percept_errors import PerceptErrors
 from procs.simulation.percepts import Percepts
+from procs.simulation.sight import glimpse_of
 from procs.vision.omni_ball import OmniBall
 from procs.vision.omni_field import OmniField
 
@@ -61,6 +62,24 @@ class FlyingConfig(Config):
 
     away_m: float = 1.0
     height_m: float = 0.1
+
+
+class BehindConfig(Config):
+    """Place of a robot before the ball."""
+
+    aside_m: float = 0.3
+
+
+class Behind(Component):
+    """A ball lies 3 m ahead; another robot stands 2.4 m ahead and to the left."""
+
+    stage = "pre_loop"
+    ground_truth: Writes[ground_truth_t]
+    config: BehindConfig
+
+    def loop(self) -> None:
+        self.ground_truth.value = truth(world(3.0, 0.0), world(2.4, self.config.aside_m))
+        self.ground_truth.write()
 
 
 class Flying(Component):
@@ -184,6 +203,33 @@ def test_ball_behind_a_robot_is_not_seen() -> None:
     assert not look(eyes, truth(ahead, (OWN[0] + 1.5, OWN[1]))).visible
     assert look(eyes, truth(ahead, (OWN[0] + 1.5, OWN[1] + 0.4))).visible
     assert look(eyes, truth(ahead, (OWN[0] + 4.0, OWN[1]))).visible
+
+
+@pytest.mark.parametrize("rendered", [False, True])
+@pytest.mark.parametrize(("aside_m", "found"), [(0.2, 0), (0.27, 40), (-0.27, 40)])
+def test_ball_that_a_robot_hides_in_part_seems_aside(rendered: bool, aside_m: float, found: int) -> None:
+    """Less than 0.4 of it are not found; the middle of what is left is further from the robot."""
+    system = seen_through(rendered, Behind, aside_m=aside_m)
+    system.tick(40)
+    percepts = map(ball_percept_t.decode, system.sent["cyan1/ball_percept"])
+    lefts_m = [percept.y_m for percept in percepts if percept.visible]
+    assert len(lefts_m) == pytest.approx(found, abs=6)
+    if found:
+        assert np.mean(lefts_m) == pytest.approx(-math.copysign(0.03, aside_m), abs=0.01)
+
+
+def test_glimpse_of_a_ball_is_that_of_sampled_points() -> None:
+    """Two robots hide a ball from both sides; a third one stands beside it."""
+    bodies_m = np.array(((1.5, 0.3), (1.6, -0.3), (2.1, 0.1)))
+    at = np.random.default_rng(1).uniform(-1.0, 1.0, (100_000, 2))
+    aside = at[np.hypot(*at.T) < 1.0][:, 0]
+    rays_rad = aside * math.asin(0.11 / 2.0)
+    free = np.ones(len(aside), bool)
+    for x_m, y_m in bodies_m[:2]:
+        free &= np.abs(rays_rad - math.atan2(y_m, x_m)) > math.asin(0.25 / math.hypot(x_m, y_m))
+    glimpse = glimpse_of(np.array((2.0, 0.0)), 0.11, bodies_m, 0.25)
+    assert glimpse.visible == pytest.approx(free.mean(), abs=0.005)
+    assert glimpse.aside_m == pytest.approx(0.11 * aside[free].mean(), abs=0.001)
 
 
 def test_ball_that_hardly_flies_appears_further_away() -> None:

@@ -85,6 +85,10 @@ def test_mirror_that_shows_next_to_nothing_gives_nothing() -> None:
     [
         ("shared.mirror.height_m=75", "'mirror.height_m' is 75; it should be less than or equal to 2"),
         ("shared.mirror.height_m=0.1", "'mirror.height_m' is 0.1; it should be greater than 0.3"),
+        (
+            "shared.mirror.height_m=0.31 shared.ball.radius_m=0.2",
+            "a ball of 0.4 m reaches up to the mirror, which is 0.31 m high",
+        ),
         ("*/omni_field.nearest_m=8", "the rays begin at 8 m; farthest_m should be greater"),
         (
             "*/omni_field.farthest_m=0.6 */omni_field.nearest_m=0.7",

@@ -56,6 +56,14 @@ def test_robot_ahead_is_found_at_its_place(ahead_m: float) -> None:
     assert np.sqrt(np.mean(np.square(errors), axis=0)) == pytest.approx((0.0, 0.0), abs=0.03 + 0.015 * ahead_m**2)
 
 
+def test_pair_that_sees_no_ground_shows_robots() -> None:
+    rig = StereoRig(width_px=800, height_px=80, focal_px=2400.0, baseline_m=0.05)
+    renderer, away_m = StereoRenderer(rig, Field(), Bodies()), 4.0
+    empty = renderer.render(Pose(0.0, 0.0, 0.0), [])
+    assert (empty == empty[0, 0]).all()
+    assert (renderer.render(Pose(0.0, 0.0, 0.0), [(away_m, 0.0)]) != empty).any()
+
+
 @pytest.mark.slow
 def test_stated_covariances_are_those_of_the_errors() -> None:
     surprises = []
@@ -215,6 +223,17 @@ def test_fusion_takes_percepts_of_one_time_only() -> None:
     first, second = bench.port("fused_obstacles").sent
     assert ([each.x_m for each in first.obstacles], first.capture_us) == ([1.0, 2.1], 110_000)
     assert [each.x_m for each in second.obstacles] == [1.0]
+
+
+def test_fusion_joins_obstacles_of_a_slower_pair_once() -> None:
+    bench, counts = Bench(ObstacleFusion), []
+    for frame in range(4):
+        if frame % 2 == 0:
+            bench.port("stereo_obstacles").put(capture_us=bench.time_us + 1, obstacles=[obstacle(2.0, 0.0)])
+        bench.port("obstacle_percepts").put(capture_us=bench.time_us + 1, obstacles=[obstacle(-1.0, 0.0)])
+        bench.iterate()
+        counts.append(bench.port("fused_obstacles").sent[-1].n)
+    assert counts == [2, 1, 2, 1]
 
 
 @pytest.mark.parametrize("swapped", [False, True])

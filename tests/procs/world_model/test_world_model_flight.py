@@ -178,6 +178,26 @@ def test_ball_leaves_the_ground_only_with_a_reason() -> None:
         assert tracker.flight is None
 
 
+def test_ball_behind_the_net_of_a_goal_is_believed_there() -> None:
+    tracker, place_m = BallTracker(), np.array((11.8, 0.4))
+    for _ in range(20):
+        tracker.see(Sighting("a", True, place_m, np.eye(2) * 0.03**2, observer_m=EYE_M))
+        tracker.advance(PERIOD_S, 2.0, walls=Walls.of(Field(), BALL))
+    assert tracker.track.state[:2] == pytest.approx(place_m, abs=0.02)
+
+
+@pytest.mark.parametrize(("height_m", "stops"), [(0.0, True), (2.0, False)])
+def test_net_stops_a_ball_unless_it_flies_over(height_m: float, stops: bool) -> None:
+    tracker, reached_m = BallTracker(), 0.0
+    for tick in range(9):
+        tracker.advance(PERIOD_S, 2.0, walls=Walls.of(Field(), BALL))
+        if tick < 2:
+            place_m = np.array((10.5 + 4.0 * PERIOD_S * tick, 0.0))
+            tracker.see(Sighting("a", True, place_m, np.eye(2) * 0.02**2, height_m=height_m, observer_m=EYE_M))
+        reached_m = max(reached_m, float(tracker.track.state[0]))
+    assert (reached_m < 11.5) is stops
+
+
 def test_ball_in_the_mouth_keeps_its_speed_until_it_touches() -> None:
     """The light barrier sees the ball a few centimetres before the mouth stops it."""
     robot = Robot("cyan1", (0.0, 0.0, 0.0), 3, sight_correlation=1.0)

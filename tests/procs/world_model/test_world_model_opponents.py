@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from fwk.testing import Bench
+from lcmtypes.soccer import obstacle_t
 from procs.model.frames import rotation
 from procs.world_model.robot_tracks import RobotTracks, any_near, without_known
 from procs.world_model.team import Mate, Places, Team
+from procs.world_model.world_model import WorldModel
 
 Floats = NDArray[np.float64]
 PERIOD_S = 0.05
@@ -51,6 +54,17 @@ def test_each_track_keeps_a_number_of_its_own() -> None:
     assert numbers[19] == {-2.0: 1, 0.0: 2}
     assert numbers[39] == {0.0: 2}
     assert numbers[59] == {-2.0: 3, 0.0: 2}
+
+
+@pytest.mark.parametrize(("radius_m", "count"), [(0.15, 2), (0.25, 1)])
+def test_slim_robots_side_by_side_are_two(radius_m: float, count: int) -> None:
+    bench = Bench(WorldModel, "cyan1/world_model", robot={"radius_m": radius_m})
+    for _ in range(10):
+        bench.port("pose").put(localized=True, covariance=(np.eye(3) * 1e-4).tolist())
+        obstacles = [obstacle_t(x_m=2.0, y_m=y_m, covariance_m2=(np.eye(2) * 4e-4).tolist()) for y_m in (0.0, 0.32)]
+        bench.port("obstacle_percepts").put(obstacles=obstacles)
+        bench.iterate()
+    assert len(bench.port("world_model").sent[-1].opponents) == count
 
 
 def test_track_follows_a_robot_that_brakes_and_turns_round() -> None:
