@@ -94,6 +94,7 @@ MEASURES = [
     Measure("one sighting, ball resting", rms, "m", ""),
     Measure("one sighting, ball moving", rms, "m", ""),
     Measure("fused to best single", root_ratio, "", "<= 0.5"),
+    Measure("fused to best single at its exposure", root_ratio, "", "<= 1"),
     Measure("fused to median robot", root_ratio, "", "<= 0.5"),
     Measure("fused to plain average", root_ratio, "", "<= 0.8"),
     Measure("ball, squared error by its covariance", mean, "", "2"),

@@ -2,10 +2,12 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Set
+from collections.abc import Mapping, Set
+from typing import NamedTuple
 
 import numpy as np
 
+from lcmtypes.soccer import ground_truth_t
 from procs.evaluation.beliefs import MOVING_M_S, NEAR_M, Samples, models_of, placed_ticks
 from procs.evaluation.piece import Piece
 from procs.evaluation.poses import START_S
@@ -14,8 +16,19 @@ from procs.model.units import US_PER_S
 
 _STALE_S = 0.2  # older sightings of a robot are not averaged
 
-_Sightings = dict[str, dict[int, Floats]]
-"""x, y and distance of each robot's own sightings, by the tick of the exposure."""
+
+class _Sighting(NamedTuple):
+    """A robot's own sighting of the ball."""
+
+    exposed: int
+    """Tick of the exposure."""
+    place_m: Floats
+    """(2), world frame, by the robot's own pose."""
+    distance_m: float
+
+
+_Sightings = dict[str, dict[int, _Sighting]]
+"""Own sightings of each robot by the tick in which it tells them: nobody knows them sooner."""
 
 
 def team_ball(piece: Piece) -> Samples:
@@ -50,67 +63,83 @@ def _single(piece: Piece, sightings: _Sightings) -> Samples:
     """Returns squared errors of the sightings that robots tell, by their own poses, at the time of the exposure."""
     resting: list[float] = []
     moving: list[float] = []
-    for seen in sightings.values():
-        for tick, (x_m, y_m, distance_m) in seen.items():
-            truth = piece.truth.get(tick)
-            if truth is None or tick * piece.period_s < START_S or distance_m > NEAR_M:
+    for told in sightings.values():
+        for each in {each.exposed: each for each in told.values()}.values():
+            truth = piece.truth.get(each.exposed)
+            if truth is None or each.exposed * piece.period_s < START_S or each.distance_m > NEAR_M:
                 continue
-            error_m2 = (x_m - truth.ball_x_m) ** 2 + (y_m - truth.ball_y_m) ** 2
             moves = math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s) >= MOVING_M_S
-            (moving if moves else resting).append(error_m2)
+            (moving if moves else resting).append(_error_m2(each, truth))
     return {"one sighting, ball resting": np.array(resting), "one sighting, ball moving": np.array(moving)}
 
 
 def _fusion(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
     """Squared errors of the fused ball beside those of a single robot and of the plain average, by team and tick.
 
-    A ball in the air counts, too: the fusion has to tell where it is although single robots take it for another place.
+    A sighting counts in the tick in which its robot tells it, as a place of the ball then: no fusion can know it
+    sooner. That of the nearest robot is compared at its exposure, too. A ball in the air counts: the fusion has to tell
+    where it is although single robots take it for another place.
     """
     best: list[tuple[float, float]] = []
+    exposed: list[tuple[float, float]] = []
     middle: list[tuple[float, float]] = []
     average: list[tuple[float, float]] = []
-    fused: dict[tuple[str, int], list[float]] = defaultdict(list)
-    for robot, tick, model, truth in models_of(piece):
-        if model.ball.known and tick not in placed:
-            error_m2 = (model.ball.x_m - truth.ball_x_m) ** 2 + (model.ball.y_m - truth.ball_y_m) ** 2
-            fused[piece.team(robot), tick].append(error_m2)
-    for (team, tick), errors_m2 in fused.items():
-        recent = [
-            (seen_tick, each)
-            for robot, seen in sightings.items()
-            if piece.team(robot) == team
-            for seen_tick, each in _newest(seen, tick, _STALE_S / piece.period_s)
-        ]
+    for (team, tick), error_m2 in _fused(piece, placed).items():
+        of_team = [told for robot, told in sightings.items() if piece.team(robot) == team]
+        recent = [each for told in of_team for each in _newest(told, tick, _STALE_S / piece.period_s)]
         truth = piece.truth[tick]
-        ball_m, error_m2 = np.array((truth.ball_x_m, truth.ball_y_m)), float(np.mean(errors_m2))
-        now = [each for seen_tick, each in recent if seen_tick == tick]
-        if now:
-            single = min(now, key=lambda each: each[2])[:2] - ball_m
-            best.append((error_m2, float(single @ single)))
+        if fresh := [told[tick] for told in of_team if tick in told]:
+            best.append((error_m2, _error_m2(min(fresh, key=_distance_m), truth)))
+        if then := [each for told in of_team for each in told.values() if each.exposed == tick]:
+            exposed.append((error_m2, _error_m2(min(then, key=_distance_m), truth)))
         if recent:
-            singles_m2 = [float(np.square(each[:2] - ball_m).sum()) for _, each in recent]
-            middle.append((error_m2, float(np.median(singles_m2))))
-            mean = np.mean([each[:2] for _, each in recent], axis=0) - ball_m
-            average.append((error_m2, float(mean @ mean)))
+            middle.append((error_m2, float(np.median([_error_m2(each, truth) for each in recent]))))
+            mean_m = np.mean([each.place_m for each in recent], axis=0)
+            average.append((error_m2, _off_m2(mean_m, truth)))
     return {
         "fused to best single": np.array(best).reshape(-1, 2),
+        "fused to best single at its exposure": np.array(exposed).reshape(-1, 2),
         "fused to median robot": np.array(middle).reshape(-1, 2),
         "fused to plain average": np.array(average).reshape(-1, 2),
     }
+
+
+def _fused(piece: Piece, placed: Set[int]) -> dict[tuple[str, int], float]:
+    """Returns the mean squared error of the ball that the robots of a team know, by team and tick."""
+    errors_m2: dict[tuple[str, int], list[float]] = defaultdict(list)
+    for robot, tick, model, truth in models_of(piece):
+        if model.ball.known and tick not in placed:
+            known_m = np.array((model.ball.x_m, model.ball.y_m))
+            errors_m2[piece.team(robot), tick].append(_off_m2(known_m, truth))
+    return {place: float(np.mean(each)) for place, each in errors_m2.items()}
 
 
 def _sightings(piece: Piece, placed: Set[int]) -> _Sightings:
     """Returns what robots told, without sightings of a ball that the crew was putting down."""
     found: _Sightings = defaultdict(dict)
     for robot, told in piece.by_robot.get("team_message", {}).items():
-        for each in told.values():
-            exposed = each.ball_capture_us / US_PER_S / piece.period_s  # in ticks
+        for tick, each in told.items():
+            exposed = each.ball_capture_us / US_PER_S / piece.period_s
             around = {math.floor(exposed + 1e-6), math.ceil(exposed - 1e-6)}
             if each.ball_visible and not around & placed:
-                found[robot][round(exposed)] = np.array((each.ball_x_m, each.ball_y_m, each.ball_distance_m))
+                place_m = np.array((each.ball_x_m, each.ball_y_m))
+                found[robot][tick] = _Sighting(round(exposed), place_m, each.ball_distance_m)
     return found
 
 
-def _newest(seen: dict[int, Floats], tick: int, within: float) -> list[tuple[int, Floats]]:
-    ticks = [each for each in range(tick, tick - round(within) - 1, -1) if each in seen]
-    return [(ticks[0], seen[ticks[0]])] if ticks else []
+def _newest(told: Mapping[int, _Sighting], tick: int, within: float) -> list[_Sighting]:
+    """Returns the newest sighting that was told up to a tick, unless it was told too long ago."""
+    return [told[each] for each in range(tick, tick - round(within) - 1, -1) if each in told][:1]
+
+
+def _error_m2(sighting: _Sighting, truth: ground_truth_t) -> float:
+    return _off_m2(sighting.place_m, truth)
+
+
+def _off_m2(place_m: Floats, truth: ground_truth_t) -> float:
+    """Returns the squared distance of a place from the ball."""
+    return float((place_m[0] - truth.ball_x_m) ** 2 + (place_m[1] - truth.ball_y_m) ** 2)
+
+
+def _distance_m(sighting: _Sighting) -> float:
+    return sighting.distance_m

@@ -131,8 +131,10 @@ def test_fused_ball_is_compared_with_the_nearest_robots_sighting() -> None:
             told.ball_visible, told.ball_capture_us, told.ball_distance_m = True, tick * 50_000, distance_m
             told.ball_x_m, told.ball_y_m = truth.ball_x_m, error_m
     rows = {row.name: row.value for row in rows_of([samples_of(made)])}
-    assert rows["fused to best single"] == pytest.approx(0.05 / 0.2)
-    assert rows["fused to plain average"] == pytest.approx(0.05 / 0.3)
+    rolled_m = 0.05  # between the exposure and the message
+    assert rows["fused to best single"] == pytest.approx(0.05 / math.hypot(0.2, rolled_m))
+    assert rows["fused to best single at its exposure"] == pytest.approx(0.05 / 0.2)
+    assert rows["fused to plain average"] == pytest.approx(0.05 / math.hypot(0.3, rolled_m))
 
 
 def test_single_sightings_count_at_their_exposure_within_4_m() -> None:
