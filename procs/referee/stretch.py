@@ -30,6 +30,12 @@ class Stretch:
         self._resting_at = ball  # where the ball was when it was last seen to move on
         self._resting_s = 0.0
 
+    @property
+    def penalty_rolls(self) -> bool:
+        """Whether the ball of a penalty was shot, and no robot has touched it since."""
+        touches = self.touches
+        return self.piece is State.PENALTY and self.released and not touches.again and len(touches.robots) == 1
+
     def watch(self, duration_s: float, sight: Sight, ends: Ends, rules: Rules) -> Scene:
         """Takes a tick of `duration_s`, and returns it as the rules see it."""
         self.touches.watch(sight, ends, self.released, rules.pass_m)

@@ -106,7 +106,7 @@ class Whistle:
             self._ball.remember(sight.ball, self.rules.field)
         if not self.rules.automatic:
             self._follow(duration_s, sight)
-        elif self._time_is_over and self.state is not State.PENALTY:  # for a penalty the half is prolonged
+        elif self._time_is_over and not self._is_prolonged():
             self._end_in_time(duration_s, sight)
         elif self.stopped:
             self._wait_for_robots(duration_s, sight)
@@ -152,6 +152,12 @@ class Whistle:
             self.calls.append(Call(self.state, Team.NONE))
         else:
             self.end_match()
+
+    def _is_prolonged(self) -> bool:
+        """Returns whether the half goes on for a penalty; one that was shot in time becomes a penalty again."""
+        if self.state is State.PLAY and self._stretch.penalty_rolls:
+            self._enter(State.PENALTY, team_number(self._stretch.touches.taker), stopped=False)
+        return self.state is State.PENALTY
 
     def _end_in_time(self, duration_s: float, sight: Sight) -> None:
         """Ends the half whose time is over; a ball that went into a goal in this last tick was there in time."""

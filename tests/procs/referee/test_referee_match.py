@@ -44,6 +44,24 @@ def test_half_is_prolonged_for_a_penalty(scores: bool) -> None:
     assert (script.state[0], script.score) == (State.HALF_TIME, (int(scores), 0))
 
 
+@pytest.mark.parametrize(("by", "scores"), [("", True), ("", False), ("magenta1", False)])
+def test_penalty_that_was_shot_in_time_prolongs_the_half(by: str, scores: bool) -> None:
+    script = penalty()
+    script.touch("cyan2")
+    script.roll(8.2, 0.0)
+    assert script.state == (State.PLAY, Team.NONE, False)
+    if by:
+        script.touch(by)
+    script.whistle.time_in_half_s = script.whistle.rules.half_s
+    script.roll(9.0, 0.0)
+    assert (script.state[0] is State.HALF_TIME) is bool(by), "a save in time ends the penalty"
+    if scores:
+        script.goal(11.2, "cyan2")
+    else:
+        script.tick(Event(Kind.OUT_END, "cyan2", "", 11.2, 2.0, 5.0))
+    assert (script.state[0], script.score) == (State.HALF_TIME, (int(scores), 0))
+
+
 def test_half_is_prolonged_until_a_penalty_may_be_shot() -> None:
     script = Script().playing()
     script.robots |= BESIDE
