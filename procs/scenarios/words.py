@@ -45,7 +45,7 @@ def _state(newest: Newest) -> Callable[..., bool]:
     def state(name: str, team: str = "") -> bool:
         """Returns whether the game is in a state, for a team if one is named."""
         game = newest("world/game_state")
-        wanted, of = _named(_STATES, "state", name), _named(_TEAMS, "team", team) if team else game.state_team
+        wanted, of = _named(_STATES, "state", str(name)), _named(_TEAMS, "team", str(team)) if team else game.state_team
         return bool(game.state == wanted and game.state_team == of)
 
     return state
@@ -53,7 +53,7 @@ def _state(newest: Newest) -> Callable[..., bool]:
 
 def _named(table: Mapping[str, int], kind: str, name: str) -> int:
     if name not in table:
-        raise KeyError(f"no {kind} '{name}'; {right_name(str(name), table)}")
+        raise KeyError(f"no {kind} '{name}'; {right_name(name, table)}")
     return table[name]
 
 

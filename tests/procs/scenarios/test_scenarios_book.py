@@ -234,6 +234,11 @@ def test_condition_that_fails_in_the_run_names_the_file(tmp_path: Path) -> None:
         run(path)
 
 
+@pytest.mark.parametrize("text", ["state(kick_off)", "state(kick_off, cyan)", 'state("kick_off", "cyan")'])
+def test_states_and_teams_need_no_quotes(tmp_path: Path, text: str) -> None:
+    assert run(written(tmp_path, f"dummies: [cyan2]\nalways: ['{text} and x(cyan2) < 0']\ntime_s: 1")).ok
+
+
 @pytest.mark.parametrize("text", ['state("offside")', "world.game_state.goals", "cyan9.role.value", "2 ** 10 ** 10"])
 def test_condition_that_cannot_be_judged_is_a_mistake(tmp_path: Path, text: str) -> None:
     with pytest.raises(ScenarioError, match=r"mine.yaml: '.*': "):
