@@ -13,6 +13,7 @@ from procs.behaviour.tactics import leave_field
 from procs.behaviour.view import Robot, View
 from procs.model.field import SIDES, Field, Point
 from procs.model.game_states import State
+from procs.model.robot import ABSENT
 from tests.procs.behaviour.behaviour_parts import FIELD, agreed, ball, robot, view
 
 TEAM = (
@@ -74,6 +75,16 @@ def test_lone_robot_attacks_and_lower_number_of_two_keeps_goal() -> None:
     assert alone["cyan1"].role == ATTACKER
     two = assign(view(TEAM[2], ball(-4.0, -2.0), (TEAM[1],)), FIELD)
     assert (two["cyan2"].role, two["cyan3"].role) == (GOALKEEPER, ATTACKER)
+
+
+def test_keeper_that_does_not_play_is_replaced_when_it_is_off() -> None:
+    """Until then the referee takes the lowest number for the goalkeeper, and another robot in the area for a foul."""
+    silent = TEAM[0]._replace(role=ABSENT)
+    seen = view(TEAM[2], ball(-4.0, -2.0), (silent, TEAM[1], *TEAM[3:]))
+    there, off = assign(seen, FIELD), assign(seen.without(("cyan1",)), FIELD)
+    assert sorted(there) == ["cyan2", "cyan3", "cyan4", "cyan5"]
+    assert GOALKEEPER not in {job.role for job in there.values()}
+    assert off["cyan2"].role == GOALKEEPER
 
 
 def test_attacker_keeps_its_role_against_a_barely_faster_mate() -> None:
