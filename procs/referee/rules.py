@@ -7,6 +7,7 @@ a year are the simulation's own.
 from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, PositiveFloat
 
 from procs.model.field import Field as SoccerField
+from procs.model.game_states import State
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 
 
@@ -93,3 +94,7 @@ class Rules(BaseModel):
     """Geometry of the robots, by which pushing is judged."""
     players: Players = dict(PLAYERS)
     """Team and number of each robot."""
+
+    def time_of_s(self, piece: State) -> float:
+        """Returns the time for a set piece; after it the other team may play the ball, too."""
+        return self.penalty_s if piece is State.PENALTY else self.set_piece_s

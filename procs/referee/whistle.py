@@ -66,6 +66,10 @@ class Whistle:
         return not self.shootout and self.time_in_half_s >= halves.length_s(self.half, self.rules)
 
     @property
+    def _set_piece_is_late(self) -> bool:
+        return self.time_in_state_s >= self.rules.time_of_s(self.state)
+
+    @property
     def at_rest(self) -> bool:
         """Whether the match has a break, or has ended."""
         return self.state in (State.HALF_TIME, State.FROZEN)
@@ -239,7 +243,7 @@ class Whistle:
             self._guard_ball(duration_s, sight)
         elif self.state is not State.PLAY and not self.shootout:
             self._stretch.watch(duration_s, sight, self.ends, self.rules)
-            if self._stretch.rolled(sight.ball, self.rules) or self.time_in_state_s >= self.rules.set_piece_s:
+            if self._stretch.rolled(sight.ball, self.rules) or self._set_piece_is_late:
                 self._play(sight.ball)
 
     def _guard_ball(self, duration_s: float, sight: Sight) -> None:
@@ -308,17 +312,16 @@ class Whistle:
             self.interrupt(restarts.dropped_ball(ball, self.rules.field), Reason.DEADLOCK)
 
     def _watch_set_piece(self, scene: Scene) -> None:
-        ball, rules, touched = scene.sight.ball, self.rules, bool(scene.touches.robots)
-        longest_s = rules.penalty_s if self.state is State.PENALTY else rules.set_piece_s
+        ball, touched = scene.sight.ball, bool(scene.touches.robots)
         grave = collision(scene) or dribbling(scene)
         if grave:
             self._count_foul(grave)
             self._give_free_kick(grave)
         elif self._repeat(scene):
             return
-        elif (self.state is State.DROP_BALL and touched) or self._stretch.rolled(ball, rules):
+        elif (self.state is State.DROP_BALL and touched) or self._stretch.rolled(ball, self.rules):
             self._play(ball)
-        elif self.time_in_state_s >= longest_s:
+        elif self._set_piece_is_late:
             if self.state is State.PENALTY and not touched:
                 self.interrupt(self._goal_kick(), Reason.NOT_TAKEN)
             else:

@@ -185,3 +185,15 @@ def test_repeats_by_hand_use_up_no_repeats_after_breaches() -> None:
     script.touch("magenta1")
     assert script.state == (State.PENALTY, CYAN, True)
     assert script.reasons[-1] == "touch before the set piece was taken"
+
+
+@pytest.mark.parametrize(("piece", "time_s"), [("penalty", 10.0), ("corner", 7.0)])
+def test_set_piece_by_hand_has_the_time_of_the_rules(piece: str, time_s: float) -> None:
+    script = Script(automatic=False)
+    ask(script, piece, "cyan")
+    script.tick()
+    ask(script, "start")
+    script.wait(time_s - 0.2)
+    before = script.state[0]
+    script.wait(0.4)
+    assert (before is State.PLAY, script.state[0] is State.PLAY) == (False, True)
