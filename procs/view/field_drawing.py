@@ -1,9 +1,10 @@
 """The match as a small drawing of letters for the terminal: field, robots by number, ball."""
 
 from lcmtypes.soccer import ground_truth_t, true_robot_t
-from procs.model.field import Field
+from procs.model.field import SIDES, Field
 from procs.model.geometry import plausible
 from procs.model.robot import number_in, team_in
+from procs.model.teams import Ends
 
 Line = list[tuple[str, str]]
 
@@ -14,15 +15,21 @@ _BALL = f"bold rgb(255,190,60) {_GROUND}"
 _HEIGHT_OF_WIDTH = 2.0  # of a letter in a terminal
 
 
-def field_drawing(truth: ground_truth_t, columns: int, rows: int, field: Field | None = None) -> list[Line]:
-    """Returns the field as large as fits; cyan's goal is on the left. Each line is a list of texts and styles."""
+def field_drawing(
+    truth: ground_truth_t, columns: int, rows: int, field: Field | None = None, ends: Ends | None = None
+) -> list[Line]:
+    """Returns the field as large as fits, each goal in the colour of the team that defends it by `ends`.
+
+    The world's x points to the right. Each line is a list of texts and styles.
+    """
     measures = field or Field()
     length_m, width_m = measures.length_m, measures.width_m
     height = min(rows, round(columns * width_m / length_m / _HEIGHT_OF_WIDTH))
     width = min(columns, round(height * length_m / width_m * _HEIGHT_OF_WIDTH))
     if width < 12 or height < 5:
         return []
-    letters = [[_ground(column, row, width, height) for column in range(width)] for row in range(height)]
+    goals = _goals(ends or Ends())
+    letters = [[_ground(column, row, width, height, goals) for column in range(width)] for row in range(height)]
 
     def put(x_m: float, y_m: float, letter: str, style: str) -> None:
         if not plausible(x_m, y_m):
@@ -42,10 +49,16 @@ def _robot(robot: true_robot_t) -> tuple[str, str]:
     return str(number_in(robot))[-1], _STYLES.get(team_in(robot), _PAINT)
 
 
-def _ground(column: int, row: int, width: int, height: int) -> tuple[str, str]:
+def _goals(ends: Ends) -> tuple[str, str]:
+    """Returns the styles of the left and the right goal."""
+    left, right = (_STYLES[ends.defender(side).name.lower()] for side in SIDES)
+    return left, right
+
+
+def _ground(column: int, row: int, width: int, height: int, goals: tuple[str, str]) -> tuple[str, str]:
     top, bottom, left, right = row == 0, row == height - 1, column == 0, column == width - 1
     if (left or right) and abs(row - (height - 1) / 2) <= max(0.5, height / 12):
-        return "█", _STYLES["cyan" if left else "magenta"]  # the goals
+        return "█", goals[0 if left else 1]
     if (left or right) and (top or bottom):
         return {(True, True): "┌", (True, False): "┐", (False, True): "└", (False, False): "┘"}[top, left], _PAINT
     if top or bottom:

@@ -7,6 +7,7 @@ from typing import Any
 from lcmtypes.soccer import game_event_t, game_state_t, match_history_t
 from procs.model.field import field_of
 from procs.model.game_states import State
+from procs.model.teams import Ends
 from procs.referee.reasons import OFF_FIELD
 from procs.view.field_drawing import field_drawing
 
@@ -56,9 +57,11 @@ def headline(newest: Newest) -> str:
 
 def drawing(newest: Newest, columns: int, rows: int) -> list[list[tuple[str, str]]]:
     """Returns the field with robots and ball for the display; nothing before the first message of the simulator."""
-    truth = newest(TRUTH)
-    measures = newest(MEASURES)
-    return field_drawing(truth, columns, rows, field_of(measures) if measures else None) if truth else []
+    truth, measures, state = newest(TRUTH), newest(MEASURES), newest(GAME_STATE)
+    if truth is None:
+        return []
+    ends = Ends.told(state.cyan_side) if state else None
+    return field_drawing(truth, columns, rows, field_of(measures) if measures else None, ends)
 
 
 def summary(newest: Newest) -> list[str]:

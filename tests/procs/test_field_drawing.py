@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from lcmtypes.soccer import ground_truth_t, true_robot_t
+from lcmtypes.soccer import game_state_t, ground_truth_t, true_robot_t
 from procs.view.field_drawing import field_drawing
-from procs.view.scoreboard import TRUTH, drawing
+from procs.view.scoreboard import GAME_STATE, TRUTH, drawing
 
 
 def truth() -> ground_truth_t:
@@ -48,6 +48,14 @@ def test_robot_is_drawn_with_its_stated_number_and_team() -> None:
     letters = [piece for line in field_drawing(made, 53, 30) for piece in line]
     style = next(style for text, style in letters if "4" in text)
     assert style == next(style for text, style in letters if "3" in text)
+
+
+@pytest.mark.parametrize(("cyan_side", "left"), [(-1, "cyan1"), (1, "magenta3"), (0, "cyan1")])
+def test_goals_have_the_colours_of_their_defenders(cyan_side: int, left: str) -> None:
+    newest = {TRUTH: truth(), GAME_STATE: game_state_t(cyan_side=cyan_side)}
+    letters = [piece for line in drawing(newest.get, 53, 30) for piece in line]
+    goal = next(style for text, style in letters if "█" in text)
+    assert goal == next(style for text, style in letters if left[-1] in text)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e300])
