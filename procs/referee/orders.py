@@ -136,7 +136,7 @@ def _chosen(whistle: Whistle, sight: Sight, name: str, team: Team) -> str:
 def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
     match name:
         case "start":
-            whistle.start(sight)
+            whistle.start(sight.without(whistle.cards.sent_off))
         case "stop":
             whistle.stop(sight.ball)
         case "drop_ball":

@@ -5,6 +5,7 @@ import pytest
 from procs.model.events import Kind
 from procs.model.field import Point
 from procs.model.game_states import State
+from procs.referee.cards import Card
 from procs.referee.orders import carry_out
 from procs.referee.sight import Sight
 from tests.procs.referee.script import CYAN, MAGENTA, Script
@@ -197,3 +198,15 @@ def test_set_piece_by_hand_has_the_time_of_the_rules(piece: str, time_s: float) 
     before = script.state[0]
     script.wait(0.4)
     assert (before is State.PLAY, script.state[0] is State.PLAY) == (False, True)
+
+
+def test_start_by_hand_excuses_the_keeper_that_plays() -> None:
+    """The goalkeeper of before is off the field; the new one is far from its goal."""
+    script = Script()
+    script.whistle.card("magenta1", Card.RED)
+    script.robots |= {"magenta1": Point(10.5, 7.5), "magenta2": Point(3.0, 3.0), "cyan2": Point(6.7, 0.0)}
+    ask(script, "penalty", "cyan")
+    ask(script, "start")
+    script.tick()
+    assert script.state == (State.PENALTY, CYAN, False)
+    assert script.reasons == []
