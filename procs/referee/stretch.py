@@ -16,11 +16,15 @@ from procs.referee.touches import Carrier, Touches
 class Stretch:
     """Touches, fouls and rests of the ball since a set piece began."""
 
-    def __init__(self, piece: State, ball: Point, excused: frozenset[str] = frozenset()) -> None:
-        """Begins with the ball at a place; robots that the start found misplaced are `excused`."""
+    def __init__(self, piece: State, ball: Point, excused: frozenset[str] = frozenset(), keeper: str = "") -> None:
+        """Begins with the ball at a place; robots that the start found misplaced are `excused`.
+
+        `keeper` is the goalkeeper that faces the set piece; empty without one.
+        """
         self.piece = piece
         """Set piece at the beginning; PLAY if no robot took it in its time."""
         self.excused = excused
+        self.keeper = keeper
         self.touches = Touches(ball)
         self.released = False
         """The ball of the set piece has rolled so far that it was set free."""

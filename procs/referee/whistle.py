@@ -202,7 +202,8 @@ class Whistle:
         self.started = self._begun = True
         excused = misplaced_robots(self.restart, sight, self.ends, self.rules.field) if sight else []
         ball = sight.ball if sight else self.spot
-        self._stretch = Stretch(self.state, ball, frozenset(excused))
+        keeper = sight.goalkeeper(self.team.other) if sight else ""
+        self._stretch = Stretch(self.state, ball, frozenset(excused), keeper)
 
     def goal(self, team: Team) -> None:
         """Counts a goal."""
@@ -343,7 +344,7 @@ class Whistle:
 
     def _repeat(self, scene: Scene) -> bool:
         """Has the set piece repeated after a breach, twice at most; returns whether it does."""
-        foul = breach(scene, self.restart, self._stretch.excused)
+        foul = breach(scene, self.restart, self._stretch.excused, self._stretch.keeper)
         if foul is None or self._repeats >= _REPEATS:
             return False
         self._count_foul(foul)

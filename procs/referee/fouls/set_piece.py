@@ -11,8 +11,11 @@ _INTRUSION_M = 0.3
 """A robot that has kept its distance may come nearer by so much before the set piece is repeated."""
 
 
-def breach(scene: Scene, restart: Restart, excused: frozenset[str]) -> Foul | None:
-    """Returns the breach that repeats a set piece; robots that were misplaced at its start are excused."""
+def breach(scene: Scene, restart: Restart, excused: frozenset[str], keeper: str) -> Foul | None:
+    """Returns the breach that repeats a set piece; robots that were misplaced at its start are excused.
+
+    `keeper` is the goalkeeper that faced it at the start: one that takes its place later has left no area.
+    """
     if restart.team is Team.NONE:
         return None
     rivals = [name for name in scene.sight.touching if team_number(name) is restart.team.other]
@@ -25,12 +28,11 @@ def breach(scene: Scene, restart: Restart, excused: frozenset[str]) -> Foul | No
     intruders = sorted(set(near) - excused)
     if intruders:
         return Foul(intruders[0], Reason.TOO_NEAR, restart.spot)
-    return _keeper_left_goal(scene, restart, excused)
+    return _keeper_left_goal(scene, restart, keeper) if keeper not in excused else None
 
 
-def _keeper_left_goal(scene: Scene, restart: Restart, excused: frozenset[str]) -> Foul | None:
-    keeper = scene.sight.goalkeeper(restart.team.other)
-    if restart.state is not State.PENALTY or not keeper or keeper in excused:
+def _keeper_left_goal(scene: Scene, restart: Restart, keeper: str) -> Foul | None:
+    if restart.state is not State.PENALTY or not keeper or keeper != scene.sight.goalkeeper(restart.team.other):
         return None
     side = scene.ends.side_of(restart.team.other)
     if scene.rules.field.in_goal_area(*scene.sight.robots[keeper], side, _INTRUSION_M):

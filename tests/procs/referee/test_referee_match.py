@@ -62,6 +62,21 @@ def test_penalty_that_was_shot_in_time_prolongs_the_half(by: str, scores: bool) 
     assert (script.state[0], script.score) == (State.HALF_TIME, (int(scores), 0))
 
 
+@pytest.mark.parametrize("back", [True, False])
+def test_new_keeper_of_a_penalty_has_left_no_area(back: bool) -> None:
+    """A robot becomes the goalkeeper when a lower number is sent off, or comes back to the bench."""
+    script = penalty()
+    if back:
+        script.robots |= {"magenta0": Point(0.0, 7.5)}
+    else:
+        script.whistle.card("magenta1", Card.RED)
+    script.wait(0.5)
+    assert script.state == (State.PENALTY, CYAN, False)
+    script.robots["cyan3"] = Point(8.0, 1.0)
+    script.wait(0.1)
+    assert script.reasons[-1] == "too near to a set piece", "other breaches count"
+
+
 def test_half_is_prolonged_until_a_penalty_may_be_shot() -> None:
     script = Script().playing()
     script.robots |= BESIDE
