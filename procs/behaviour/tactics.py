@@ -31,6 +31,7 @@ _FUMBLED_M = 0.4  # the ball of a set piece that is so far from its spot has bee
 _NEAR_M = 1.0  # the taker this near to such a ball has taken it itself
 _LEAVING_M, _GENTLE_M_S = 1.5, 1.0  # while a rival is so near to the ball, the taker comes so slowly
 _BESIDE_M = (0.2, 0.8)  # a ball laid less far from the spot lies on it; one further away is put back
+_HOME_M = 1.0  # a goalkeeper this near to its penalty area goes straight home, even at a set piece
 KEEPER_OUT_M = 2.3
 """The goalkeeper comes so far before its line."""
 _WITH_BALL = ("dribble", "aim")
@@ -137,6 +138,10 @@ class Tactics:
             return self._go_for_ball(view)
         furthest_m = KEEPER_OUT_M if game.free_play else BEFORE_LINE_M
         place = Point(furthest_m - self.field.half_length_m, 0.0)
+        if not self.field.in_penalty_area(*view.own.place, -1.0, _HOME_M):
+            step = self._next_step(view, place, game)
+            if step != place:
+                return self._stand(view, step, "go home")
         return Order("keep_goal", place, intention="keep goal")
 
     def _set_piece(self, view: View, game: Game, job: Job, holds_ball: bool) -> Order:

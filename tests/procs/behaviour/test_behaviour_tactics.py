@@ -241,6 +241,19 @@ def test_keeper_keeps_goal_and_fetches_a_slow_ball_before_it() -> None:
     assert decide(view(keeper, ball(-10.2, 0.0), (), (far,)), role=GOALKEEPER, holds_ball=True).skill == "clear"
 
 
+@pytest.mark.parametrize("stopped", [True, False])
+def test_keeper_goes_home_around_their_set_piece(stopped: bool) -> None:
+    """A robot becomes the keeper of its team anywhere on the field when the lower number is sent off."""
+    game = Game(State.FREE_KICK, stopped=stopped, whose=Whose.THEIRS, spot=Point(-7.0, 0.5))
+    order = decide(view(robot("cyan1", -3.0, 0.0), ball(*game.spot)), game, GOALKEEPER)
+    way_rad = bearing_rad(Point(-3.0, 0.0), order.place) - bearing_rad(Point(-3.0, 0.0), game.spot)
+    assert math.dist(Point(-3.0, 0.0), game.spot) * abs(math.sin(way_rad)) > 3.0
+    too_near = decide(view(robot("cyan1", -6.0, -1.0), ball(*game.spot)), game, GOALKEEPER)
+    assert math.dist(too_near.place, game.spot) > 3.0
+    before_its_area = decide(view(robot("cyan1", -8.0, -1.0), ball(*game.spot)), game, GOALKEEPER)
+    assert before_its_area.skill == "keep_goal"
+
+
 def test_attacker_leaves_a_ball_that_the_keeper_takes() -> None:
     keeper = robot("cyan1", -10.0, 0.0, role=GOALKEEPER)
     assert decide(view(robot("cyan2", -6.0, 0.0), ball(-9.5, 0.0), (keeper,))).skill == "goto"
