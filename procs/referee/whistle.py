@@ -62,14 +62,6 @@ class Whistle:
         return self.state is State.FROZEN
 
     @property
-    def _time_is_over(self) -> bool:
-        return not self.shootout and self.time_in_half_s >= halves.length_s(self.half, self.rules)
-
-    @property
-    def _set_piece_is_late(self) -> bool:
-        return self.time_in_state_s >= self.rules.time_of_s(self.state)
-
-    @property
     def at_rest(self) -> bool:
         """Whether the match has a break, or has ended."""
         return self.state in (State.HALF_TIME, State.FROZEN)
@@ -88,6 +80,14 @@ class Whistle:
     def restart(self) -> Restart:
         """The set piece at hand."""
         return Restart(self.state, self.team, self.spot)
+
+    @property
+    def _time_is_over(self) -> bool:
+        return not self.shootout and self.time_in_half_s >= halves.length_s(self.half, self.rules)
+
+    @property
+    def _set_piece_is_late(self) -> bool:
+        return self.time_in_state_s >= self.rules.time_of_s(self.state)
 
     def restart_place(self, ball: Point) -> Point:
         """Returns the place to which a set piece by hand belongs: where play was stopped, or else where the ball is."""
@@ -110,7 +110,7 @@ class Whistle:
             self._ball.remember(sight.ball, self.rules.field)
         if not self.rules.automatic:
             self._follow(duration_s, sight)
-        elif self._time_is_over and not self._is_prolonged():
+        elif self._time_is_over and not self._prolong_for_penalty():
             self._end_in_time(duration_s, sight)
         elif self.stopped:
             self._wait_for_robots(duration_s, sight)
@@ -157,8 +157,8 @@ class Whistle:
         else:
             self.end_match()
 
-    def _is_prolonged(self) -> bool:
-        """Returns whether the half goes on for a penalty; one that was shot in time becomes a penalty again."""
+    def _prolong_for_penalty(self) -> bool:
+        """Prolongs the half for a penalty, also for one that was shot in time and is play by now; returns whether so."""
         if self.state is State.PLAY and self._stretch.penalty_rolls:
             self._enter(State.PENALTY, team_number(self._stretch.touches.taker), stopped=False)
         return self.state is State.PENALTY
