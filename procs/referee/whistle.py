@@ -158,7 +158,7 @@ class Whistle:
             self.end_match()
 
     def _prolong_for_penalty(self) -> bool:
-        """Prolongs the half for a penalty, also for one that was shot in time and is play by now; returns whether so."""
+        """Prolongs the half for a penalty, also for one shot in time that is play by now; returns whether it does."""
         if self.state is State.PLAY and self._stretch.penalty_rolls:
             self._enter(State.PENALTY, team_number(self._stretch.touches.taker), stopped=False)
         return self.state is State.PENALTY
