@@ -1,5 +1,6 @@
 """Failures of components: component, place and reason, in its state and in the log."""
 
+from bdb import BdbQuit
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
@@ -66,7 +67,7 @@ class Failures:
         Raises:
             ComponentFailedError: always, unless the exception left the debugger or ends the process.
         """
-        if isinstance(error, DebuggerLeft | KeyboardInterrupt):
+        if isinstance(error, DebuggerLeft | BdbQuit | KeyboardInterrupt):
             return
         self.make_room(error)
         frame = own_frame(error)

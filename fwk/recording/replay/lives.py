@@ -2,6 +2,7 @@
 
 import json
 import traceback
+from bdb import BdbQuit
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 
@@ -135,7 +136,7 @@ class Lives:
         try:
             with watching:
                 yield
-        except RecordingError:
+        except (BdbQuit, RecordingError):
             raise
         except ReachesOutsideError as error:
             self.leave_out(component, str(error))
