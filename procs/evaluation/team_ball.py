@@ -28,7 +28,7 @@ class _Sighting(NamedTuple):
 
 
 _Sightings = dict[str, dict[int, _Sighting]]
-"""Own sightings of each robot by the tick in which it tells them: nobody knows them sooner."""
+"""Own sightings of each robot by the tick in which it tells them; no mate knows them sooner."""
 
 
 def team_ball(piece: Piece) -> Samples:

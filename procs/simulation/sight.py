@@ -31,7 +31,7 @@ def hidden(points_m: Floats, bodies_m: Floats, radius_m: float) -> Floats:
 
 
 class Glimpse(NamedTuple):
-    """What round bodies leave to see of a ball."""
+    """Visible part of a ball behind round bodies."""
 
     visible: float
     """Part (0..1) of its disc."""
@@ -40,7 +40,7 @@ class Glimpse(NamedTuple):
 
 
 def glimpse_of(ball_m: Floats, ball_radius_m: float, bodies_m: Floats, body_radius_m: float) -> Glimpse:
-    """Returns what is seen of a ball (2) behind upright bodies (k, 2), in the frame of the robot that looks."""
+    """Returns the visible part of a ball (2) behind upright bodies (k, 2), in the frame of the robot that looks."""
     range_m = max(math.hypot(*ball_m), 1e-6)
     ahead_x, ahead_y = (ball_m / range_m).tolist()
     half_rad = math.asin(min(1.0, ball_radius_m / range_m))
@@ -48,10 +48,8 @@ def glimpse_of(ball_m: Floats, ball_radius_m: float, bodies_m: Floats, body_radi
     for x_m, y_m in bodies_m.tolist():
         along_m, left_m = ahead_x * x_m + ahead_y * y_m, ahead_x * y_m - ahead_y * x_m
         if 0.0 < along_m < range_m - body_radius_m:
-            middle_rad, side_rad = (
-                math.atan2(left_m, along_m),
-                math.asin(min(1.0, body_radius_m / math.hypot(x_m, y_m))),
-            )
+            middle_rad = math.atan2(left_m, along_m)
+            side_rad = math.asin(min(1.0, body_radius_m / math.hypot(x_m, y_m)))
             covered.append(((middle_rad - side_rad) / half_rad, (middle_rad + side_rad) / half_rad))
     visible, moment, begin = 0.0, 0.0, -1.0
     for first, last in (*sorted(covered), (1.0, 1.0)):

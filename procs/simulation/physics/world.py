@@ -258,8 +258,10 @@ class World:
         return [Event(Kind.KICK, name, "", x_m, y_m, speed_m_s) for name, push in pushes.items() if push.kicked]
 
     def _walls_stop(self, x_m: float, y_m: float) -> bool:
-        """Puts a ball back to the wall in which its middle is: robots squeeze a light one through, and a very fast one
-        is on the other side after a step."""
+        """Puts a ball whose middle is beyond a wall back to it; returns whether there was one.
+
+        Robots squeeze a light ball through, and a very fast one is on the other side after a step.
+        """
         if abs(x_m) <= self._walls_m.x_m and abs(y_m) <= self._walls_m.y_m:
             return False
         at_m, way_m_s = [], []
