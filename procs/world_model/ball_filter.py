@@ -16,7 +16,7 @@ import numpy as np
 
 from procs.model.ball import BallModel
 from procs.model.frames import Floats
-from procs.world_model.ball_modes import MODES, STATES, Mode, noise, passes
+from procs.world_model.ball_modes import MODES, NO_CONTACT, STATES, Contact, Mode, noise, passes
 from procs.world_model.batch import corrected, innovation
 from procs.world_model.carpet_friction import Friction, rubbed
 
@@ -37,6 +37,7 @@ _LEAST = 1e-6  # probability that every model keeps
 _KICK_SPEED_SD = 0.06  # relative error of a kick's speed
 _KICK_DIRECTION_SD = 0.03  # rad
 _KICK_TIME_SD_S = 0.012  # the kick lies somewhere in the tick before its report: 40 ms by the root of 12
+_MISSES = 0.005  # probability that a kick that was told did not reach the ball
 _SPIN_SD_M_S = 1.0  # deviation of the spin from that of a rolling ball, before the track is asked
 _HELD_SPIN_M_S = 0.4  # deviation of the spin of a ball in a mouth, which follows the robot late
 _LEVELS = 20  # to which the probability of a contact is rounded
@@ -106,24 +107,48 @@ class BallFilter:
         self._p[:, _CARPET] = self._p[:, :, _CARPET] = 0.0
         self._p[:, _CARPET, _CARPET] = carpet[1]
 
+    @property
+    def likeliest(self) -> tuple[float, float, float, float, float, float]:
+        """The likeliest model's x, y (m), vx, vy (m/s), with the variances of place and velocity along an axis.
+
+        This takes a fraction of the time of the mixture's mean and covariance.
+        """
+        mode = int(self._weights.argmax())
+        x_m, y_m, vx_m_s, vy_m_s = self._x[mode, :4].tolist()
+        xx_m2, yy_m2, vv_m2_s2, ww_m2_s2 = self._p[mode].diagonal()[:4].tolist()
+        return x_m, y_m, vx_m_s, vy_m_s, (xx_m2 + yy_m2) / 2, (vv_m2_s2 + ww_m2_s2) / 2
+
     def predict(
-        self, duration_s: float, rolling_m_s2: float, contact: float = 0.0, grounded_s: float | None = None
+        self, duration_s: float, rolling_m_s2: float, contact: Contact = NO_CONTACT, grounded_s: float | None = None
     ) -> None:
         """Moves the ball on by `duration_s`.
 
         Args:
             duration_s: the step.
             rolling_m_s2: deceleration of the rolling ball on the usual carpet.
-            contact: probability that a robot, a post or a wall reaches the ball.
+            contact: what robots, posts and walls do to the ball.
             grounded_s: part of the step in which the carpet acts on the ball; None: all of it.
         """
         grounded_s = duration_s if grounded_s is None else grounded_s
         _, _, vx_m_s, vy_m_s, ux_m_s, uy_m_s, _ = self._x[Mode.FREE].tolist()
         slow = max(math.hypot(vx_m_s, vy_m_s), math.hypot(ux_m_s, uy_m_s)) < _SLOW_M_S
-        self._mix(passes(duration_s, round(contact * _LEVELS) / _LEVELS, slow, grounded_s <= 0.0))
+        moves = passes(duration_s, round(contact.probability * _LEVELS) / _LEVELS, slow, grounded_s <= 0.0)
+        if contact.hit > 0.0:
+            moves = moves * (1.0 - contact.hit)
+            moves[:, Mode.HIT] += contact.hit
+        self._mix(moves)
+        if contact.hit > 0.0:
+            self._bounce(contact)
         motion = self._rub(duration_s, grounded_s, rolling_m_s2)
         self._mixture = None
         self._p = motion @ self._p @ motion.transpose(0, 2, 1) + noise(duration_s, self._rolling_share)
+
+    def _bounce(self, contact: Contact) -> None:
+        """Turns the ball that was hit by a robot within this step; `_mix` has made its states anew."""
+        change_m_s = np.array((contact.change_x_m_s, contact.change_y_m_s))
+        self._x[Mode.HIT, _PLACE] -= contact.after_s * change_m_s
+        self._x[Mode.HIT, _VELOCITY] += change_m_s
+        self._x[Mode.HIT, _SETTLED] += self._rolling_share * change_m_s
 
     def _rub(self, duration_s: float, grounded_s: float, rolling_m_s2: float) -> Floats:
         """Lets the ball move and the carpet act on it; returns the derivatives (modes, 7, 7) of the new states."""
@@ -187,7 +212,7 @@ class BallFilter:
         self._become(Mode.HANDLED)
 
     def kick(self, velocity_m_s: Floats, position_m: Floats | None = None, covariance_m2: Floats | None = None) -> None:
-        """Takes a kick that gave the ball about this velocity (2), world frame.
+        """Takes a kick that gave the ball about this velocity (2), world frame, unless it did not reach the ball.
 
         Args:
             velocity_m_s: (2), world frame.
@@ -205,8 +230,15 @@ class BallFilter:
             np.outer(along, along) * (_KICK_SPEED_SD * speed_m_s + 0.2) ** 2
             + np.outer(across, across) * (_KICK_DIRECTION_SD * speed_m_s + 0.1) ** 2
         )
+        lies, lies_m2 = (part.copy() for part in self._moments())
         self._set(np.concatenate((position_m, velocity_m_s)), covariance, *self._spin(self.state[2:], 0.0))
         self._become(Mode.FREE)
+        lies[2:6] = 0.0
+        lies_m2[2:6] = lies_m2[:, 2:6] = 0.0
+        lies_m2[2:6, 2:6] = np.eye(4) * 1e-4
+        self._x[Mode.RESTS], self._p[Mode.RESTS] = lies, lies_m2
+        self._weights[Mode.RESTS] = _MISSES
+        self._weights[Mode.FREE] -= _MISSES
 
     def _spin(self, rolling_m_s: Floats, least_m_s: float) -> tuple[Floats, Floats]:
         """Returns the velocity (2) at which the ball would roll with its spin, and its covariance (2, 2).

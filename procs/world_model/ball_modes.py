@@ -2,6 +2,7 @@
 
 from enum import IntEnum
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,21 @@ class Mode(IntEnum):
     HIT = 3
 
 
+class Contact(NamedTuple):
+    """What robots, posts and walls do to the ball in a step."""
+
+    hit: float = 0.0
+    """Probability that a robot is in the way of a ball that would run on freely."""
+    probability: float = 0.0
+    """Probability that a robot, a post or a wall reaches the ball."""
+    change_x_m_s: float = 0.0
+    """Change of the velocity by the hit, as far as the places of ball and robot tell it."""
+    change_y_m_s: float = 0.0
+    after_s: float = 0.0
+    """Time from the beginning of the step to the hit."""
+
+
+NO_CONTACT = Contact()
 MODES = len(Mode)
 STATES = 7
 """x, y, vx, vy, settled ux, uy, carpet, as the filter of the ball explains them."""

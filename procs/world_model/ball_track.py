@@ -24,6 +24,8 @@ from procs.model.field import Field
 from procs.model.frames import Floats
 from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
+from procs.world_model.ball_modes import NO_CONTACT, Contact
+from procs.world_model.contact import Robots
 from procs.world_model.flight import Flight
 from procs.world_model.seen import Seen
 
@@ -124,10 +126,14 @@ class Sighting:
 class Step:
     """Conditions of the motion during a tick."""
 
+    end_us: int = 0
+    """End of the tick."""
     rolling_m_s2: float = 0.0
     """Deceleration of the rolling ball."""
     contact: float = 0.0
-    """Probability that a robot or a wall reaches the ball."""
+    """Probability that a post or a wall reaches the ball."""
+    robots: Robots | None = None
+    """Robots that may touch the ball."""
     timeout_us: int = 2 * US_PER_S
     """The ball is forgotten after that time without a sighting."""
     walls: Walls | None = None
@@ -168,12 +174,23 @@ class BallTrack:
         assert self.filter is not None
         grounded_s, walls = duration_s, step.walls
         behind = walls is not None and walls.behind_net(self.filter, self.ball.radius_m)
+        contact = self._contact(duration_s, step)
         if self.flight is not None:
             self.flight, grounded_s = self.flight.moved(duration_s, self.ball)
-        self.filter.predict(duration_s, step.rolling_m_s2, step.contact, grounded_s)
+        self.filter.predict(duration_s, step.rolling_m_s2, contact, grounded_s)
         if walls is not None:
             over = self.flight is not None and self.flight.height_m > walls.goal_height_m
             walls.contain(self.filter, nets=not (behind or over))
+
+    def _contact(self, duration_s: float, step: Step) -> Contact:
+        """Returns what may turn a known ball in a step that ends at the time of the track."""
+        assert self.filter is not None
+        met = Contact(probability=step.contact) if step.contact else NO_CONTACT
+        robots = step.robots
+        if robots is None or (self.flight is not None and self.flight.height_m > robots.height_m):
+            return met
+        found = robots.contact(self.filter, duration_s, (step.end_us - self.time_us) / US_PER_S + duration_s)
+        return found._replace(probability=max(found.probability, step.contact))
 
     def see(self, sighting: Sighting, others: Sequence[Sighting] = ()) -> None:
         """Takes a sighting that was captured at the time of the track.
@@ -191,14 +208,17 @@ class BallTrack:
             self._doubt(sighting)
 
     def _fits(self, sighting: Sighting) -> bool:
-        """Takes a sighting of a known ball; returns False if it does not fit."""
+        """Takes a sighting of a known ball; returns False if it does not fit.
+
+        A height in the air that does not fit replaces the flight if the place fits: the ball has bounced.
+        """
         assert self.filter is not None
         if self.flight is None:
             if not self.filter.see(sighting.position_m, sighting.covariance_m2):
                 return False
             self.flight = Flight.of_sight(sighting.height_m, rises=True)
             return True
-        flight = self.flight.seen(sighting.height_m)
+        flight = self.flight.seen(sighting.height_m) or Flight.of_sight(sighting.height_m)
         if flight is None or not self.filter.see(sighting.position_m, sighting.of_flying_m2()):
             return False
         self.flight = flight
@@ -258,7 +278,7 @@ class BallTrack:
             if near and (other.robot != sighting.robot or not self._contradicted(sighting.robot, exposed_us)):
                 self.confirmed = {}
                 self._begin(other)
-                self._advance(between_s, Step(self.ball.rolling_m_s2))
+                self._advance(between_s, Step(rolling_m_s2=self.ball.rolling_m_s2))
                 self._fits(sighting)
                 self._confirm(sighting)
                 return

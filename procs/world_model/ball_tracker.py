@@ -7,7 +7,7 @@ the later inputs are taken again.
 
 from bisect import bisect_left
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from operator import itemgetter
 
 from procs.model.ball import BALL, BallModel
@@ -15,6 +15,7 @@ from procs.model.frames import Floats
 from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_track import BallTrack, Sighting, Step, Walls
+from procs.world_model.contact import Robots
 from procs.world_model.flight import Flight
 from procs.world_model.seen import Seen
 
@@ -42,8 +43,8 @@ class BallTracker:
         self.ball = ball
         """Friction and bounce of the ball."""
         self._now_us = 0
-        self._steps: list[tuple[int, Step]] = []
-        """Ends of the last ticks, and their conditions."""
+        self._steps: list[Step] = []
+        """The last ticks."""
         self._moments = [_Moment(BallTrack(-_KEPT_US, ball))]
         self._sound = 1  # number of moments whose tracks contain all inputs
         self._current: BallTrack | None = None
@@ -86,6 +87,7 @@ class BallTracker:
         timeout_s: float,
         *,
         contact: float = 0.0,
+        robots: Robots | None = None,
         walls: Walls | None = None,
     ) -> None:
         """Moves the track on by `duration_s`; forgets a ball without a sighting for `timeout_s`.
@@ -93,14 +95,16 @@ class BallTracker:
         Args:
             duration_s: time since the last call.
             timeout_s: longest time without a sighting.
-            contact: probability that a robot or a wall reaches the ball.
+            contact: probability that a post or a wall reaches the ball.
+            robots: those that may touch the ball.
             walls: limits of the ball's way.
         """
         self._now_us += round(duration_s * US_PER_S)
         self._current = None
         oldest_us = self._now_us - _KEPT_US
-        self._steps = [step for step in self._steps if step[0] >= oldest_us]
-        self._steps.append((self._now_us, Step(self.ball.rolling_m_s2, contact, round(timeout_s * US_PER_S), walls)))
+        self._steps = [step for step in self._steps if step.end_us >= oldest_us]
+        timeout_us = round(timeout_s * US_PER_S)
+        self._steps.append(Step(self._now_us, self.ball.rolling_m_s2, contact, robots, timeout_us, walls))
         self._settle()
         while len(self._moments) > 1 and self._moments[1].track.time_us <= oldest_us:
             del self._moments[0]
@@ -127,18 +131,12 @@ class BallTracker:
     def kick(self, velocity_m_s: Floats, age_s: float = 0.0, mouth: Seen = Seen.NOTHING, lift_m_s: float = 0.0) -> None:
         """Takes a kick that gave the ball a velocity; call it before `advance`.
 
-        From then on no robot was near enough to touch the ball, whatever earlier calls of `advance` said.
-
         Args:
             velocity_m_s: (2), world frame.
             age_s: time since the kick; negative: so long after the last tick, within the one that `advance` ends.
             mouth: place of the ball at the kick (0 or 1), if it is not the track's: the mouth of a mate.
             lift_m_s: velocity upwards.
         """
-        kicked_us = self._now_us - round(age_s * US_PER_S)
-        self._steps = [
-            (end_us, replace(step, contact=0.0) if end_us > kicked_us else step) for end_us, step in self._steps
-        ]
         self._take(_KICKED, age_s, lambda track: track.kick(velocity_m_s, lift_m_s, mouth))
 
     def _take(self, rank: int, age_s: float, taken: _Input) -> None:
@@ -180,6 +178,6 @@ class BallTracker:
         """Returns a track at a later time, through the conditions of the ticks between."""
         while track.time_us < time_us:
             end_us = min(time_us, track.time_us + _LONGEST_STEP_US)
-            step = next((step for until_us, step in self._steps if until_us >= end_us), Step())
+            step = next((step for step in self._steps if step.end_us >= end_us), Step())
             track = track.moved(end_us, step)
         return track

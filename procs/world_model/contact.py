@@ -1,44 +1,93 @@
-"""Whether a robot may touch the ball: the ball keeps its motion while none is within reach."""
+"""Robots near the ball: it keeps its motion while none is within reach, and cannot run on through one."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
+from dataclasses import dataclass
 
 from procs.world_model.ball_filter import BallFilter
+from procs.world_model.ball_modes import NO_CONTACT, Contact
 
 _HULL_M = 0.03  # from the distance in the mouth to that beside it
 _HULL_SD_M = 0.03  # deviation of the distance at which a robot touches the ball: its mouth is flat, its back round
 _MOST_M = 0.2  # a ball whose place is less certain than that is treated as if it were
 _FLEES_M_S = 0.5  # a ball that surely leaves a robot faster than that was kicked, and is not touched again
+_NEAR_M = 2.5  # robots further from the ball cannot touch it, not even if it was kicked in the last ticks
+_RAMS_M_S = 2.0  # a ball that approaches a robot slower is handled by it
+_DENT_M = 0.08  # a ball that would be nearer than the touch by so much cannot have run on
+_BOUNCE = 0.2  # share of the speed towards a robot with which a ball leaves it, on average over mouths and hulls
+
+RobotRow = tuple[float, float, float, float, float]
+"""Position x, y (m), velocity vx, vy (m/s), and variance of the position along an axis (m²)."""
 
 
-def touch_probability(
-    ball: BallFilter,
-    robots: Iterable[Sequence[float]],
-    robots_m2: Iterable[float],
-    touch_m: float,
-    duration_s: float,
-) -> float:
-    """Returns the probability that the nearest of the robots reaches the ball within `duration_s`.
+@dataclass(frozen=True)
+class Robots:
+    """Robots near the ball at the end of a tick."""
 
-    Args:
-        ball: belief about the ball.
-        robots: n rows x, y (m), vx, vy (m/s) of the robots' middles.
-        robots_m2: n variances of the middles along an axis.
-        touch_m: distance of the middles of robot and ball when they touch.
-        duration_s: the step.
-    """
-    covariance, (x_m, y_m, vx_m_s, vy_m_s) = ball.covariance.tolist(), ball.state.tolist()
-    ball_m2 = min(_MOST_M**2, (covariance[0][0] + covariance[1][1]) / 2)
-    deviation_m_s = math.sqrt((covariance[2][2] + covariance[3][3]) / 2)
-    likely = -math.inf
-    for (robot_x_m, robot_y_m, robot_vx_m_s, robot_vy_m_s), robot_m2 in zip(robots, robots_m2, strict=True):
-        away_x_m, away_y_m = robot_x_m - x_m, robot_y_m - y_m
-        way_m = math.hypot(away_x_m, away_y_m)
-        closing_m_s = -(away_x_m * (robot_vx_m_s - vx_m_s) + away_y_m * (robot_vy_m_s - vy_m_s)) / max(way_m, 1e-6)
-        if -closing_m_s - 2 * deviation_m_s < _FLEES_M_S:
-            gap_m = way_m - touch_m - _HULL_M - duration_s * max(closing_m_s, 0.0)
-            likely = max(likely, -gap_m / math.sqrt(ball_m2 + robot_m2 + _HULL_SD_M**2))
-    return _normal(likely)
+    rows: tuple[RobotRow, ...]
+    touch_m: float
+    """Distance of the middles of robot and ball when they touch."""
+    height_m: float
+    """A ball that flies higher passes over them."""
+
+    @classmethod
+    def near(cls, ball: BallFilter, robots: Iterable[RobotRow], touch_m: float, height_m: float) -> "Robots":
+        """Returns those of the `robots` that may touch the ball."""
+        x_m, y_m, *_ = ball.likeliest
+        near = (row for row in robots if math.hypot(row[0] - x_m, row[1] - y_m) < _NEAR_M)
+        return cls(tuple(near), touch_m, height_m)
+
+    def contact(self, ball: BallFilter, duration_s: float, before_s: float) -> Contact:
+        """Returns what they do to the ball in a step that begins `before_s` before the end of the tick."""
+        if not self.rows:
+            return NO_CONTACT
+        x_m, y_m, vx_m_s, vy_m_s, place_m2, speed_m2_s2 = ball.likeliest
+        ball_m2, deviation_m_s = min(_MOST_M**2, place_m2), math.sqrt(speed_m2_s2)
+        likely, hit = -math.inf, NO_CONTACT
+        for robot_x_m, robot_y_m, robot_vx_m_s, robot_vy_m_s, robot_m2 in self.rows:
+            away = x_m - robot_x_m + robot_vx_m_s * before_s, y_m - robot_y_m + robot_vy_m_s * before_s
+            past = vx_m_s - robot_vx_m_s, vy_m_s - robot_vy_m_s
+            way_m = max(math.hypot(*away), 1e-6)
+            closing_m_s = -(away[0] * past[0] + away[1] * past[1]) / way_m
+            if -closing_m_s - 2 * deviation_m_s >= _FLEES_M_S:
+                continue
+            spread_m = math.sqrt(ball_m2 + robot_m2 + _HULL_SD_M**2)
+            gap_m = way_m - self.touch_m - _HULL_M - duration_s * max(closing_m_s, 0.0)
+            likely = max(likely, -gap_m / spread_m)
+            if closing_m_s > _RAMS_M_S:
+                hit = max(hit, self._hit(away, past, closing_m_s, duration_s, spread_m))
+        return hit._replace(probability=_normal(likely))
+
+    def _hit(
+        self,
+        away: tuple[float, float],
+        past: tuple[float, float],
+        closing_m_s: float,
+        duration_s: float,
+        spread_m: float,
+    ) -> Contact:
+        """Returns the hit of a robot by a ball that approaches.
+
+        Args:
+            away: from the robot to the ball, m.
+            past: velocity of the ball as the robot sees it, m/s.
+            closing_m_s: part of that velocity towards the robot.
+            duration_s: the step.
+            spread_m: deviation of the distance between robot and ball.
+        """
+        way_m, speed_m_s = math.hypot(*away), math.hypot(*past)
+        ahead_m = way_m * closing_m_s / speed_m_s  # on the ball's way, to the place that is nearest to the robot
+        aside_m2 = max(0.0, way_m * way_m - ahead_m * ahead_m)
+        driven_m = min(ahead_m, duration_s * speed_m_s)
+        nearest_m = math.sqrt(aside_m2 + (ahead_m - driven_m) ** 2)
+        inside = _normal((self.touch_m - _DENT_M - nearest_m) / spread_m)
+        touches_m = ahead_m - math.sqrt(max(0.0, self.touch_m**2 - aside_m2))
+        after_s = min(max(0.0, touches_m), driven_m) / speed_m_s
+        normal_x_m, normal_y_m = away[0] + past[0] * after_s, away[1] + past[1] * after_s
+        towards_m2_s = max(0.0, -(past[0] * normal_x_m + past[1] * normal_y_m))
+        turn_1_s = (1.0 + _BOUNCE) * towards_m2_s / max(normal_x_m**2 + normal_y_m**2, 1e-12)
+        probability = min(1.0, closing_m_s - _RAMS_M_S) * inside
+        return Contact(probability, 0.0, turn_1_s * normal_x_m, turn_1_s * normal_y_m, after_s)
 
 
 def _normal(deviations: float) -> float:

@@ -30,7 +30,7 @@ from procs.model.robot import ABSENT, PLAYERS, ROBOT, TEAM_NUMBERS, Players, Rob
 from procs.model.units import US_PER_S
 from procs.world_model.ball_track import Sighting, Walls
 from procs.world_model.ball_tracker import BallTracker
-from procs.world_model.contact import touch_probability
+from procs.world_model.contact import Robots
 from procs.world_model.kicks import Kicks
 from procs.world_model.opponents import OpponentSettings, strangers
 from procs.world_model.own_view import OwnView
@@ -200,8 +200,9 @@ class WorldModel(Component):
         kicks = self._kicks.of_mates(told, self.clock.now_us, self._mouth_m)
         for kick in [kicked, *kicks] if kicked else kicks:
             self._ball.kick(kick.velocity_m_s, kick.age_s - passed_s, kick.mouth, kick.lift_m_s)
-        contact = self._contact(team, passed_s)
-        self._ball.advance(passed_s, config.ball_timeout_s, contact=contact, walls=self._walls)
+        robots = self._robots_near(team, passed_s)
+        wall = float(self._ball.known and self._walls.near(self._ball.track, passed_s))
+        self._ball.advance(passed_s, config.ball_timeout_s, contact=wall, robots=robots, walls=self._walls)
         if self._holds and view.localized and not kicked:
             self._take_held_ball(view)
         self._held = self._holds
@@ -229,22 +230,16 @@ class WorldModel(Component):
         else:
             self._ball.hold(self._robot, state, covariance)
 
-    def _contact(self, team: Sequence[PlaceRow], passed_s: float) -> float:
-        """Returns the probability that a robot, a post or the wall around the field reaches the ball in a tick."""
+    def _robots_near(self, team: Sequence[PlaceRow], passed_s: float) -> Robots | None:
+        """Returns the robots that may touch the ball in a tick, as they are at its end."""
         if not self._ball.known:
-            return 0.0
-        flight = self._ball.flight
-        if flight is not None and flight.height_m > self.config.robot.height_m:
-            return 0.0
-        track = self._ball.track
-        if self._walls.near(track, passed_s):
-            return 1.0
-        robots = [row[:4] for row in team]
-        variances_m2 = [(row[4] + row[7]) / 2 for row in team]
+            return None
+        rows = [(*row[:4], (row[4] + row[7]) / 2) for row in team]
         for tracks in filter(len, (self._opponents, self._silent)):
-            robots += tracks.states.tolist()
-            variances_m2 += ((tracks.covariances[:, 0, 0] + tracks.covariances[:, 1, 1]) / 2).tolist()
-        return touch_probability(track, robots, variances_m2, self._mouth_m, passed_s)
+            variances_m2 = (tracks.covariances[:, 0, 0] + tracks.covariances[:, 1, 1]) / 2
+            for (x_m, y_m, vx_m_s, vy_m_s), place_m2 in zip(tracks.states.tolist(), variances_m2.tolist(), strict=True):
+                rows.append((x_m + vx_m_s * passed_s, y_m + vy_m_s * passed_s, vx_m_s, vy_m_s, place_m2))
+        return Robots.near(self._ball.track, rows, self._mouth_m, self.config.robot.height_m)
 
     def _look_for_ball(self, view: OwnView, percept: ball_percept_t) -> None:
         """Takes the newest percept of the ball, and keeps its likeliest place for the next message to the team."""

@@ -8,6 +8,7 @@ import pytest
 
 from procs.model.ball import BALL
 from procs.world_model.ball_filter import BallFilter
+from procs.world_model.ball_modes import Contact
 from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
 from tests.procs.world_model.eyes import PERIOD_S, ROLLING_M_S2, ROLLING_NOISE_M2_S3, Eye, Floats, follow, rms, rolling
@@ -262,7 +263,7 @@ def test_covariance_stays_symmetric_and_positive() -> None:
     rng = np.random.default_rng(1)
     track = BallFilter(np.zeros(2), np.eye(2) * 0.01, BALL)
     for _ in range(400):
-        track.predict(PERIOD_S, ROLLING_M_S2, contact=True)
+        track.predict(PERIOD_S, ROLLING_M_S2, Contact(probability=1.0))
         track.see(rng.standard_normal(2) * 0.1, np.diag(rng.uniform(1e-6, 0.1, 2)))
         assert (np.linalg.eigvalsh(track.covariance) > 0).all()
         assert track.covariance == pytest.approx(track.covariance.T, abs=1e-12)
@@ -272,7 +273,7 @@ def test_long_step_is_as_sound_as_many_short_ones() -> None:
     """A step may be as long as the age of a message; no probability becomes negative."""
     track = BallFilter(np.zeros(2), np.eye(2) * 0.01, BALL)
     for _ in range(10):
-        track.predict(0.5, ROLLING_M_S2, contact=True)
+        track.predict(0.5, ROLLING_M_S2, Contact(probability=1.0))
         track.see(np.zeros(2), np.eye(2) * 0.01)
     assert (track.weights >= 0.0).all()
     assert track.weights.sum() == pytest.approx(1.0)

@@ -83,7 +83,7 @@ def test_own_lob_is_known_without_any_sighting() -> None:
     for place, velocity in islice(lobbed(), 15):
         tracker.advance(PERIOD_S, 2.0)
         assert tracker.track.state[:2] == pytest.approx(place[:2], abs=0.05)
-        assert tracker.track.state[2] == pytest.approx(velocity[0], abs=0.02)
+        assert tracker.track.state[2] == pytest.approx(velocity[0], abs=0.06)
         assert tracker.flight is not None
         assert tracker.flight.height_m == pytest.approx(place[2], abs=0.03)
 
@@ -143,7 +143,7 @@ def test_ball_that_flies_is_not_braked_and_one_that_landed_is() -> None:
             tracker.advance(PERIOD_S, 5.0)
         return float(tracker.track.state[2])
 
-    assert after(LIFT_M_S, 10) == pytest.approx(SPEED_M_S, abs=0.02)
+    assert after(LIFT_M_S, 10) == pytest.approx(SPEED_M_S, abs=0.06)
     assert after(0.0, 10) == pytest.approx(SPEED_M_S - 10 * PERIOD_S * BALL.sliding_m_s2, abs=0.1)
     assert after(LIFT_M_S, 60) < SPEED_M_S - 2.0
 
@@ -156,6 +156,18 @@ def test_sighting_at_another_height_does_not_fit() -> None:
     before_m = tracker.track.state
     tracker.see(Sighting("a", True, before_m[:2] + 0.1, np.eye(2) * 0.02**2, observer_m=EYE_M))
     assert tracker.track.state == pytest.approx(before_m)
+
+
+def test_ball_that_bounced_keeps_its_way_over_the_ground() -> None:
+    """The height does not fit, the place does: the ball has met the ground sooner than was believed."""
+    tracker = just_lobbed(LIFT_M_S)
+    for _ in range(6):
+        tracker.advance(PERIOD_S, 2.0)
+    before = tracker.track.state
+    tracker.see(Sighting("a", True, before[:2], np.eye(2) * 0.02**2, height_m=0.1, observer_m=EYE_M))
+    assert tracker.track.state == pytest.approx(before, abs=0.1)
+    assert tracker.flight is not None
+    assert tracker.flight.height_m == pytest.approx(0.1)
 
 
 def test_lob_that_met_something_is_found_with_one_sighting() -> None:

@@ -10,6 +10,7 @@ from procs.model.ball import BALL
 from procs.simulation.physics.rolling import RollingFriction
 from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
+from procs.world_model.contact import Robots
 from procs.world_model.seen import Seen
 from tests.procs.world_model.eyes import PERIOD_S, Eye, Floats, rms, rolling
 
@@ -199,7 +200,7 @@ def test_kick_ends_the_touches_that_were_possible() -> None:
     """A mate hears of a kick a tick later; that tick began with the kicker at the ball."""
     tracker = just_kicked("a", held=10)
     late = just_kicked("a", held=10)
-    tracker.advance(0.05, 2.0, contact=False)
-    late.advance(0.05, 2.0, contact=True)
+    tracker.advance(0.05, 2.0)
+    late.advance(0.05, 2.0, robots=Robots(((0.0, 0.0, 0.0, 0.0, 0.03**2),), touch_m=0.33, height_m=0.8))
     late.kick(np.array((8.0, 0.0)), 0.05)
     assert late.track.covariance[2, 2] < 2 * tracker.track.covariance[2, 2]

@@ -21,13 +21,20 @@ class Watcher:
     def __init__(self, name: str) -> None:
         self.bench = Bench(WorldModel, f"{name}/world_model", period_s=PERIOD_S)
 
-    def tick(self, times: int = 1, localized: bool = True, told: team_message_t | None = None, **kicker: Any) -> None:
+    def tick(
+        self,
+        times: int = 1,
+        localized: bool = True,
+        told: team_message_t | None = None,
+        visible: bool = True,
+        **kicker: Any,
+    ) -> None:
         for _ in range(times):
             port = self.bench.port
             port("pose").put(covariance=CERTAIN, localized=localized)
             port("odometry").put()
             port("kicker_state").put(**kicker)
-            port("ball_percept").put(visible=True, x_m=3.0, y_m=1.0, covariance_m2=(np.eye(2) * 1e-4).tolist())
+            port("ball_percept").put(visible=visible, x_m=3.0, y_m=1.0, covariance_m2=(np.eye(2) * 1e-4).tolist())
             if told is not None:
                 told.header.time_us = self.bench.time_us
                 port("team_inbox").put(messages=[told])
@@ -51,17 +58,24 @@ def kick_of(mate: str, kicks: int, kick_us: int, localized: bool = True) -> team
     return message
 
 
-def speed_after_mates_kicks(*kicks: int, localized: bool = True) -> float:
-    """Returns the believed speed of a ball after messages with these numbers of kicks, the last of a fresh kick."""
+def speed_after_mates_kicks(*kicks: int, localized: bool = True, lies: bool = False) -> float:
+    """Returns the believed speed of a ball after messages with these numbers of kicks, the last of a fresh kick.
+
+    If it `lies`, the robot sees it in its place twice after that kick.
+    """
     watcher = Watcher("cyan2")
     for number in kicks[:-1]:
         watcher.tick(10, told=kick_of("cyan1", number, 1))
-    watcher.tick(told=kick_of("cyan1", kicks[-1], watcher.bench.time_us, localized))
+    watcher.tick(1 + lies, told=kick_of("cyan1", kicks[-1], watcher.bench.time_us, localized), visible=lies)
     return watcher.ball_speed_m_s
 
 
 def test_kick_that_a_mate_tells_counts() -> None:
     assert speed_after_mates_kicks(3, 4) > 5.0
+
+
+def test_told_kick_of_a_ball_that_is_seen_to_lie_has_missed() -> None:
+    assert speed_after_mates_kicks(3, 4, lies=True) < 0.5
 
 
 @pytest.mark.parametrize("kicks", [(3, 3), (3, 1)])
