@@ -104,6 +104,8 @@ class QuietPdb(pdb.Pdb):
             options |= {"stdin": SingleLines(0), "stdout": sys.stdout}
         super().__init__(**options)
         self._silent = False
+        self._first: tuple[str, int] | None = None
+        self._wanted: Callable[[Any], bool] = lambda _: True
 
     def message(self, msg: str) -> None:
         """Prints a message, unless it tells that the temporary breakpoint is gone."""

@@ -13,7 +13,7 @@ from fwk.model.errors import Problems
 
 _SHOWN_MAX = 60
 """Number of characters that a message shows of a value."""
-_HALF = re.compile("[\ud800-\udfff]")
+_HALF = re.compile(r"[\ud800-\udfff]")
 VALUES_MAX = 100_000
 """Largest number of values of a file with its aliases expanded; more is a mistake or an attack."""
 FLOW_DEPTH_MAX = 100
@@ -223,7 +223,7 @@ class _Converter:
 
 
 def _joined(text: str) -> str:
-    """Returns the text with JSON's surrogate pairs, `"\ud83e\udd16"`, joined to letters."""
+    r"""Returns the text with JSON's surrogate pairs, `"\ud83e\udd16"`, joined to letters."""
     if not _HALF.search(text):
         return text
     try:
