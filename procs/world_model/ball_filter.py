@@ -230,13 +230,18 @@ class BallFilter:
             np.outer(along, along) * (_KICK_SPEED_SD * speed_m_s + 0.2) ** 2
             + np.outer(across, across) * (_KICK_DIRECTION_SD * speed_m_s + 0.1) ** 2
         )
-        lies, lies_m2 = (part.copy() for part in self._moments())
+        before = self._moments()
         self._set(np.concatenate((position_m, velocity_m_s)), covariance, *self._spin(self.state[2:], 0.0))
         self._become(Mode.FREE)
-        lies[2:6] = 0.0
-        lies_m2[2:6] = lies_m2[:, 2:6] = 0.0
-        lies_m2[2:6, 2:6] = np.eye(4) * 1e-4
-        self._x[Mode.RESTS], self._p[Mode.RESTS] = lies, lies_m2
+        self._may_have_missed(*before)
+
+    def _may_have_missed(self, mean: Floats, covariance: Floats) -> None:
+        """Leaves a probability for a ball that rests where it was, at the mean (7) with the covariance (7, 7)."""
+        rests, rests_2 = self._x[Mode.RESTS], self._p[Mode.RESTS]
+        rests[:], rests_2[:] = mean, covariance
+        rests[2:6] = 0.0
+        rests_2[2:6] = rests_2[:, 2:6] = 0.0
+        rests_2[2:6, 2:6] = np.eye(4) * 1e-4
         self._weights[Mode.RESTS] = _MISSES
         self._weights[Mode.FREE] -= _MISSES
 

@@ -112,7 +112,7 @@ def shot_at(robot: Robots | None, ticks: int) -> BallTracker:
     return tracker
 
 
-def test_kicked_ball_stops_at_a_robot_that_nobody_sees_it_hit() -> None:
+def test_kicked_ball_stops_at_a_robot_without_a_sighting() -> None:
     tracker = shot_at(robots((0.9, 0.0, 0.0, 0.0, ROBOT_M2)), 5)
     assert tracker.track.state[0] < 0.9, "on the kicker's side of the robot"
     assert shot_at(None, 5).track.state[0] > 1.5
