@@ -30,7 +30,8 @@ _STILL = np.tile(np.eye(STATES), (MODES, 1, 1))
 _STILL[Mode.RESTS, 2:6] = 0.0
 _SLOW_M_S = 0.15  # a free ball this slow is about to rest
 _UNKNOWN_SPEED_M_S = 3.0
-_UNKNOWN_SLIP_M_S = 0.8
+_UNKNOWN_SETTLED = 0.85  # share of an unknown velocity in the settled one ...
+_UNKNOWN_SLIP_M_S = 0.8  # ... and the deviation of the rest
 _CARPET_SD = 0.18  # published decelerations differ by a third
 _CLUTTER_1_M2 = 4e-3  # density of false sightings; a sighting that is less probable does not fit
 _LEAST = 1e-6  # probability that every model keeps
@@ -42,13 +43,16 @@ _SPIN_SD_M_S = 1.0  # deviation of the spin from that of a rolling ball, before 
 _HELD_SPIN_M_S = 0.4  # deviation of the spin of a ball in a mouth, which follows the robot late
 _LEVELS = 20  # to which the probability of a contact is rounded
 _FIRST = np.array((0.3, 0.45, 0.2, 0.05))
+_FIRST_MOVING = np.array((0.05, 0.7, 0.2, 0.05))
 
 
 class BallFilter:
     """Mixture of the models; `state` and `covariance` are those of the mixture."""
 
-    def __init__(self, position_m: Floats, covariance_m2: Floats, ball: BallModel) -> None:
-        """Starts from one sighting (2) with its covariance (2, 2); the velocity is unknown."""
+    def __init__(
+        self, position_m: Floats, covariance_m2: Floats, ball: BallModel, velocity_m_s: Floats | None = None
+    ) -> None:
+        """Starts from one sighting (2) with its covariance (2, 2); the velocity is unknown, or a guess (2)."""
         self._sliding_m_s2 = ball.sliding_m_s2
         self._rolling_share = ball.rolling_share  # of the velocity, in the settled one ...
         self._spun_share = 1.0 - self._rolling_share  # ... and of the one at which the ball would roll with its spin
@@ -58,13 +62,17 @@ class BallFilter:
         self._x[:, _CARPET] = 1.0
         self._p = np.zeros((MODES, STATES, STATES))
         self._p[:, _PLACE, _PLACE] = covariance_m2
+        if velocity_m_s is not None:
+            self._x[1:, _VELOCITY], self._x[1:, _SETTLED] = velocity_m_s, _UNKNOWN_SETTLED * velocity_m_s
         moves = self._p[1:]
         moves[:, _VELOCITY, _VELOCITY] = np.eye(2) * _UNKNOWN_SPEED_M_S**2
-        moves[:, _VELOCITY, _SETTLED] = moves[:, _SETTLED, _VELOCITY] = np.eye(2) * _UNKNOWN_SPEED_M_S**2 * 0.85
-        moves[:, _SETTLED, _SETTLED] = np.eye(2) * (_UNKNOWN_SPEED_M_S**2 * 0.85**2 + _UNKNOWN_SLIP_M_S**2)
+        moves[:, _VELOCITY, _SETTLED] = moves[:, _SETTLED, _VELOCITY] = (
+            np.eye(2) * _UNKNOWN_SPEED_M_S**2 * _UNKNOWN_SETTLED
+        )
+        moves[:, _SETTLED, _SETTLED] = np.eye(2) * (_UNKNOWN_SPEED_M_S**2 * _UNKNOWN_SETTLED**2 + _UNKNOWN_SLIP_M_S**2)
         self._p[Mode.RESTS, 2:6, 2:6] = np.eye(4) * 1e-4
         self._p[:, _CARPET, _CARPET] = _CARPET_SD**2
-        self._weights = _FIRST.copy()
+        self._weights = (_FIRST if velocity_m_s is None else _FIRST_MOVING).copy()
         self._mixture: tuple[Floats, Floats] | None = None  # mean and covariance, once asked for
 
     def copy(self) -> "BallFilter":

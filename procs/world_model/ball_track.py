@@ -8,7 +8,7 @@ Order of the sources of sightings:
 
 A sighting that does not fit the track is dropped if a better source has confirmed the track at the same exposure.
 Otherwise it is kept as a doubt, until a better source confirms the track; two doubts that fit each other begin a new
-track: the ball was kicked, bounced or was placed elsewhere. Two doubts of one robot do not suffice if another robot has
+track: the ball was kicked, bounced or was placed elsewhere. A ball that can have come from where it was seen last did. Two doubts of one robot do not suffice if another robot has
 confirmed the track meanwhile. One doubt suffices if no robot has seen the ball for a while, as during most of a lob.
 """
 
@@ -31,7 +31,8 @@ from procs.world_model.seen import Seen
 
 _SECOND_SIGHT_US = 300_000
 _LOST_US = 250_000  # a ball that no robot has seen for so long may have met something
-_FASTEST_M_S = 13.0
+_FASTEST_M_S, _USUAL_M_S = 13.0, 11.0  # speeds of a ball that was kicked hard
+_LATE_S = 0.03  # time by which a track lies behind a ball that was kicked
 _OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
 _NEVER_US = -(1 << 60)
 _WALL_BOUNCE, _NET_BOUNCE = 0.5, 0.05  # shares of the speed that they leave
@@ -150,6 +151,8 @@ class BallTrack:
     """None while the ball is not known."""
     seen_us: int = _NEVER_US
     """Exposure of the newest sighting."""
+    seen_m: tuple[float, float] = (0.0, 0.0)
+    """Place of the ball then."""
     confirmed: dict[str, tuple[int, float]] = of_class(default_factory=dict)
     """Robot to exposure and weakness of its newest sighting in the track."""
     doubts: tuple[tuple[int, Sighting], ...] = ()
@@ -162,10 +165,10 @@ class BallTrack:
     def moved(self, time_us: int, step: Step) -> "BallTrack":
         """Returns the track at a later time; this one stays as it is."""
         if self.filter is None or time_us - self.seen_us > step.timeout_us:
-            return BallTrack(time_us, self.ball, None, self.seen_us, carpet=self._carpet())
+            return BallTrack(time_us, self.ball, None, self.seen_us, self.seen_m, carpet=self._carpet())
         doubts = self.doubts and tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= _SECOND_SIGHT_US)
         ball, confirmed = self.filter.copy(), self.confirmed.copy()
-        made = BallTrack(time_us, self.ball, ball, self.seen_us, confirmed, doubts, flight=self.flight)
+        made = BallTrack(time_us, self.ball, ball, self.seen_us, self.seen_m, confirmed, doubts, flight=self.flight)
         made._advance((time_us - self.time_us) / US_PER_S, step)
         return made
 
@@ -231,7 +234,7 @@ class BallTrack:
         self.filter.hold(state, covariance + np.diag(np.square((_HELD_M, _HELD_M, _HELD_M_S, _HELD_M_S))))
         self.flight = None
         self.confirmed = {robot: (self.time_us, 0.0)}
-        self.seen_us = self.time_us
+        self._note_place()
         self.doubts = ()
 
     def kick(self, velocity_m_s: Floats, lift_m_s: float, mouth: Seen) -> None:
@@ -241,16 +244,16 @@ class BallTrack:
             if self.filter is None:
                 self.filter = self._new(*place)
             self.filter.kick(velocity_m_s, *place)
-            self.seen_us = self.time_us
+            self._note_place()
         elif self.filter is not None:
             self.filter.kick(velocity_m_s)
         self.flight = Flight.of_kick(lift_m_s)
         self.confirmed = {}
         self.doubts = ()
 
-    def _new(self, position_m: Floats, covariance_m2: Floats) -> BallFilter:
+    def _new(self, position_m: Floats, covariance_m2: Floats, velocity_m_s: Floats | None = None) -> BallFilter:
         """Returns a filter that begins with a sighting, on the carpet that is known."""
-        made, carpet = BallFilter(position_m, covariance_m2, self.ball), self._carpet()
+        made, carpet = BallFilter(position_m, covariance_m2, self.ball, velocity_m_s), self._carpet()
         if carpet is not None:
             made.lie_on(carpet)
         return made
@@ -277,21 +280,36 @@ class BallTrack:
             near = np.hypot(*(sighting.position_m - other.position_m)) <= _FASTEST_M_S * between_s + spread_m
             if near and (other.robot != sighting.robot or not self._contradicted(sighting.robot, exposed_us)):
                 self.confirmed = {}
-                self._begin(other)
+                self._begin(other, self._velocity_to(other, exposed_us))
                 self._advance(between_s, Step(rolling_m_s2=self.ball.rolling_m_s2))
                 self._fits(sighting)
                 self._confirm(sighting)
                 return
         self.doubts = (*self.doubts, (self.time_us, sighting))
 
-    def _begin(self, sighting: Sighting) -> None:
-        self.filter = self._new(sighting.position_m, sighting.covariance_m2)
-        self.flight = Flight.of_sight(sighting.height_m)
+    def _velocity_to(self, sighting: Sighting, exposed_us: int) -> Floats | None:
+        """Returns the mean velocity (2) from where the ball was seen last, if it can have come from there."""
+        passed_s = (exposed_us - self.seen_us) / US_PER_S
+        way_m = np.asarray(sighting.position_m - self.seen_m)
+        length_m = float(np.hypot(*way_m))
+        if length_m > _FASTEST_M_S * (passed_s + _LATE_S) + 3 * np.sqrt(np.trace(sighting.covariance_m2)):
+            return None
+        return way_m / max(passed_s, _LATE_S, length_m / _USUAL_M_S)
+
+    def _begin(self, sighting: Sighting, velocity_m_s: Floats | None = None) -> None:
+        rises = velocity_m_s is not None and (self.flight is None or self.flight.lift_m_s > 0.0)
+        self.filter = self._new(sighting.position_m, sighting.covariance_m2, velocity_m_s)
+        self.flight = Flight.of_sight(sighting.height_m, rises)
         self.doubts = ()
         self._confirm(sighting)
 
     def _confirm(self, sighting: Sighting) -> None:
         weakness = sighting.weakness
         self.confirmed[sighting.robot] = (self.time_us, weakness)
-        self.seen_us = self.time_us
+        self._note_place()
         self.doubts = tuple(doubt for doubt in self.doubts if doubt[1].weakness <= weakness)
+
+    def _note_place(self) -> None:
+        """Notes when and where a known ball was seen last."""
+        assert self.filter is not None
+        self.seen_us, self.seen_m = self.time_us, self.filter.likeliest[:2]

@@ -204,3 +204,27 @@ def test_kick_ends_the_touches_that_were_possible() -> None:
     late.advance(0.05, 2.0, robots=Robots(((0.0, 0.0, 0.0, 0.0, 0.03**2),), touch_m=0.33, height_m=0.8))
     late.kick(np.array((8.0, 0.0)), 0.05)
     assert late.track.covariance[2, 2] < 2 * tracker.track.covariance[2, 2]
+
+
+def moved_to(place_m: tuple[float, float], height_m: float = 0.0) -> BallTracker:
+    """Returns the track of a resting ball that two robots see at another place in their next frames, at one time."""
+    tracker = BallTracker()
+    for _ in range(10):
+        tracker.advance(0.04, 2.0)
+        tracker.see(Sighting("a", True, np.zeros(2), np.eye(2) * 0.02**2))
+    tracker.advance(0.04, 2.0)
+    for robot in ("a", "b"):
+        tracker.see(Sighting(robot, robot == "a", np.array(place_m), np.eye(2) * 0.02**2, height_m=height_m))
+    return tracker
+
+
+def test_kick_of_a_rival_that_two_robots_see_at_once_has_a_velocity() -> None:
+    """Sightings of one moment tell none, but the ball came from where it was seen last."""
+    assert moved_to((0.42, 0.0)).track.state[2:] == pytest.approx((10.0, 0.0), abs=1.5)
+    lob = moved_to((0.42, 0.0), height_m=0.3)
+    assert lob.flight is not None
+    assert lob.flight.lift_m_s > 2.0
+
+
+def test_ball_that_was_put_elsewhere_has_no_velocity() -> None:
+    assert moved_to((2.0, 1.0)).track.state == pytest.approx((2.0, 1.0, 0.0, 0.0), abs=0.05)
