@@ -8,8 +8,9 @@ Order of the sources of sightings:
 
 A sighting that does not fit the track is dropped if a better source has confirmed the track at the same exposure.
 Otherwise it is kept as a doubt, until a better source confirms the track; two doubts that fit each other begin a new
-track: the ball was kicked, bounced or was placed elsewhere. A ball that can have come from where it was seen last did. Two doubts of one robot do not suffice if another robot has
-confirmed the track meanwhile. One doubt suffices if no robot has seen the ball for a while, as during most of a lob.
+track: the ball was kicked, bounced or was placed elsewhere. If it can have come from where it was seen last, it did;
+this tells about its velocity. Two doubts of one robot do not suffice if another robot has confirmed the track
+meanwhile. One doubt suffices if no robot has seen the ball for a while, as during most of a lob.
 """
 
 import math
