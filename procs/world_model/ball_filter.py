@@ -134,7 +134,7 @@ class BallFilter:
         Args:
             duration_s: the step.
             rolling_m_s2: deceleration of the rolling ball on the usual carpet.
-            contact: what robots, posts and walls do to the ball.
+            contact: effect of robots, posts and walls on the ball.
             grounded_s: part of the step in which the carpet acts on the ball; None: all of it.
         """
         grounded_s = duration_s if grounded_s is None else grounded_s

@@ -19,7 +19,7 @@ class Mode(IntEnum):
 
 
 class Contact(NamedTuple):
-    """What robots, posts and walls do to the ball in a step."""
+    """Effect of robots, posts and walls on the ball in a step."""
 
     hit: float = 0.0
     """Probability that a robot is in the way of a ball that would run on freely."""

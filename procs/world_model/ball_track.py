@@ -25,7 +25,7 @@ from procs.model.field import Field
 from procs.model.frames import Floats
 from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
-from procs.world_model.ball_modes import NO_CONTACT, Contact
+from procs.world_model.ball_modes import Contact
 from procs.world_model.contact import Robots
 from procs.world_model.flight import Flight
 from procs.world_model.seen import Seen
@@ -187,12 +187,11 @@ class BallTrack:
             walls.contain(self.filter, nets=not (behind or over))
 
     def _contact(self, duration_s: float, step: Step) -> Contact:
-        """Returns what may turn a known ball in a step that ends at the time of the track."""
+        """Returns the effect of robots, posts and walls on a known ball in a step that ends now."""
         assert self.filter is not None
-        met = Contact(probability=step.contact) if step.contact else NO_CONTACT
         robots = step.robots
         if robots is None or (self.flight is not None and self.flight.height_m > robots.height_m):
-            return met
+            return Contact(probability=step.contact)
         found = robots.contact(self.filter, duration_s, (step.end_us - self.time_us) / US_PER_S + duration_s)
         return found._replace(probability=max(found.probability, step.contact))
 

@@ -38,7 +38,7 @@ class Robots:
         return cls(tuple(near), touch_m, height_m)
 
     def contact(self, ball: BallFilter, duration_s: float, before_s: float) -> Contact:
-        """Returns what they do to the ball in a step that begins `before_s` before the end of the tick."""
+        """Returns their effect on the ball in a step that begins `before_s` before the end of the tick."""
         if not self.rows:
             return NO_CONTACT
         x_m, y_m, vx_m_s, vy_m_s, place_m2, speed_m2_s2 = ball.likeliest

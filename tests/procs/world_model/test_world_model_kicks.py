@@ -218,7 +218,7 @@ def moved_to(place_m: tuple[float, float], height_m: float = 0.0) -> BallTracker
     return tracker
 
 
-def test_kick_of_a_rival_that_two_robots_see_at_once_has_a_velocity() -> None:
+def test_kick_that_two_robots_see_at_once_has_a_velocity() -> None:
     """Sightings of one moment tell none, but the ball came from where it was seen last."""
     assert moved_to((0.42, 0.0)).track.state[2:] == pytest.approx((10.0, 0.0), abs=1.5)
     lob = moved_to((0.42, 0.0), height_m=0.3)
