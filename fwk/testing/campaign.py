@@ -37,7 +37,7 @@ _EMPTY: tuple[Any, ...] = ("", {}, [])
 
 
 class FolderError(CampaignError):
-    """A folder that cannot hold a campaign: a file of it is damaged, or cannot be read or written."""
+    """A folder that cannot hold a campaign: it holds another one, or a file that is damaged or cannot be used."""
 
 
 @dataclass(frozen=True)
@@ -103,8 +103,8 @@ class Campaign:
         The digest `code` of the modules is kept with each result.
 
         Raises:
-            CampaignError: the folder holds results of another campaign, or another is played into it.
-            FolderError: what the folder says about its campaign is damaged, or cannot be read or written.
+            FolderError: the folder holds results of another campaign, or another is played into it; or what the
+                folder says about its campaign is damaged, or cannot be read or written.
             OSError: there is no folder, and none can be made.
         """
         self._folder, self._code = folder, code
@@ -121,7 +121,7 @@ class Campaign:
             cure = "remove it if the results beside it are of this launch file and its settings"
             raise FolderError(f"{note} is damaged: {_flaw_of(old)}; {cure}, or choose another folder")
         elif json.loads(old) != json.loads(text) and not self._began_anew(note, text):
-            raise CampaignError(f"{folder} holds another campaign: {old.decode()}; choose another folder")
+            raise FolderError(f"{folder} holds another campaign: {old.decode()}; choose another folder")
 
     def _began_anew(self, note: Path, text: str) -> bool:
         """Begins this campaign in the place of another that has no result and is not played; returns whether it did."""

@@ -7,10 +7,11 @@ Order of the sources of sightings:
 3. Mates, when the robot does not see the ball itself; among them the more precise.
 
 A sighting that does not fit the track is dropped if a better source has confirmed the track at the same exposure.
-Otherwise it is kept as a doubt, until a better source confirms the track; two doubts that fit each other begin a new
-track: the ball was kicked, bounced or was placed elsewhere. If it can have come from where it was seen last, it did;
-this tells about its velocity. Two doubts of one robot do not suffice if another robot has confirmed the track
-meanwhile. One doubt suffices if no robot has seen the ball for a while, as during most of a lob.
+A moving ball that can have come there from where it was seen last has met something: a new track begins, and the way
+tells about its velocity. Otherwise the sighting is kept as a doubt, until a better source confirms the track; two
+doubts that fit each other begin a new track, too: the ball was kicked or was placed elsewhere. Two doubts of one robot
+do not suffice if another robot has confirmed the track meanwhile. One doubt suffices if no robot has seen the ball for
+a while, as during most of a lob.
 """
 
 import math
@@ -35,10 +36,14 @@ _LOST_US = 250_000  # a ball that no robot has seen for so long may have met som
 _FASTEST_M_S, _USUAL_M_S = 13.0, 11.0  # speeds of a ball that was kicked hard
 _LATE_S = 0.03  # time by which a track lies behind a ball that was kicked
 _OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
+_AT_ONCE_US = 20_000  # robots that saw a ball within that time saw it at one place
+_MOVES_M_S = 1.0  # a slower ball that seems to jump is more likely seen by a robot that errs about its own place
+_BELOW_M = 0.3  # something on the ground is right below a ball in the air only if the ball's place is that certain
 _NEVER_US = -(1 << 60)
 _WALL_BOUNCE, _NET_BOUNCE = 0.5, 0.05  # shares of the speed that they leave
 _INSIDE_M = 1.0  # a ball that far from the walls is within them whatever its model
 _POST_M = 0.2  # a ball touches a post at most that far from it
+_KEEPER_M = 1.0  # a keeper that no camera sees may stand so far in front of its goal
 _MARGIN_M, _MOST_M = 0.05, 0.2  # of a ball near a wall; a less certain place counts as if it were that certain
 _HELD_M = 0.03  # deviation of a held ball's place in the mouth
 _HELD_M_S = 0.1
@@ -88,13 +93,13 @@ class Walls:
         ball.stay_within(self.net_x_m if in_goal else self.x_m, self.y_m, _NET_BOUNCE if in_goal else _WALL_BOUNCE)
 
     def near(self, ball: BallFilter, duration_s: float) -> bool:
-        """Returns whether the ball may reach a wall, a net or a post within `duration_s`."""
+        """Returns whether the ball may reach a wall, a net, a post or an unseen keeper within `duration_s`."""
         (x_m, y_m, vx_m_s, vy_m_s), covariance = map(abs, ball.state.tolist()), ball.covariance
         margin_m = _MARGIN_M + duration_s * math.hypot(vx_m_s, vy_m_s)
         margin_m += min(_MOST_M, math.sqrt(2 * (covariance[0, 0] + covariance[1, 1])))
         at_posts = x_m > self.goal_x_m - margin_m and abs(y_m - self.goal_half_width_m) < margin_m + _POST_M
-        in_net = x_m > self.net_x_m - margin_m and y_m < self.goal_half_width_m
-        return bool(x_m > self.x_m - margin_m or y_m > self.y_m - margin_m or at_posts or in_net)
+        at_goal = x_m > self.goal_x_m - _KEEPER_M - margin_m and y_m < self.goal_half_width_m + margin_m
+        return bool(x_m > self.x_m - margin_m or y_m > self.y_m - margin_m or at_posts or at_goal)
 
 
 @dataclass(frozen=True)
@@ -207,13 +212,14 @@ class BallTrack:
         elif self.time_us - self.seen_us > _LOST_US:
             self.confirmed = {}
             self._begin(sighting)
-        elif not self._overruled(sighting):
+        elif not self._overruled(sighting) and not self._struck(sighting):
             self._doubt(sighting)
 
     def _fits(self, sighting: Sighting) -> bool:
         """Takes a sighting of a known ball; returns False if it does not fit.
 
-        A height in the air that does not fit replaces the flight if the place fits: the ball has bounced.
+        A height that does not fit replaces the flight if the place fits: the ball has bounced, or lies. Something on
+        the ground right below a ball in the air is another thing.
         """
         assert self.filter is not None
         if self.flight is None:
@@ -222,7 +228,9 @@ class BallTrack:
             self.flight = Flight.of_sight(sighting.height_m, rises=True)
             return True
         flight = self.flight.seen(sighting.height_m) or Flight.of_sight(sighting.height_m)
-        if flight is None or not self.filter.see(sighting.position_m, sighting.of_flying_m2()):
+        if flight is None and self.filter.likeliest[4] < _BELOW_M**2:
+            return False
+        if not self.filter.see(sighting.position_m, sighting.of_flying_m2()):
             return False
         self.flight = flight
         return True
@@ -287,6 +295,24 @@ class BallTrack:
                 return
         self.doubts = (*self.doubts, (self.time_us, sighting))
 
+    def _struck(self, sighting: Sighting) -> bool:
+        """Begins a new track with the sighting of a moving ball that met something; returns False if it met nothing.
+
+        A ball in the air is elsewhere then: where only the height does not fit, another thing may be seen.
+        """
+        assert self.filter is not None
+        flight, (*_, vx_m_s, vy_m_s, _, _) = self.flight, self.filter.likeliest
+        velocity_m_s = self._velocity_to(sighting, self.time_us)
+        if velocity_m_s is None or self._contradicted(sighting.robot, self.time_us - _AT_ONCE_US):
+            return False
+        if flight is None and math.hypot(vx_m_s, vy_m_s) <= _MOVES_M_S:
+            return False
+        if flight is not None and self.filter.copy().see(sighting.position_m, sighting.of_flying_m2()):
+            return False
+        self.confirmed = {}
+        self._begin(sighting, velocity_m_s, flight and flight.seen(sighting.height_m))
+        return True
+
     def _velocity_to(self, sighting: Sighting, exposed_us: int) -> Floats | None:
         """Returns the mean velocity (2) from where the ball was seen last, if it can have come from there."""
         passed_s = (exposed_us - self.seen_us) / US_PER_S
@@ -296,10 +322,11 @@ class BallTrack:
             return None
         return way_m / max(passed_s, _LATE_S, length_m / _USUAL_M_S)
 
-    def _begin(self, sighting: Sighting, velocity_m_s: Floats | None = None) -> None:
+    def _begin(self, sighting: Sighting, velocity_m_s: Floats | None = None, flight: Flight | None = None) -> None:
+        """Begins a new track; without a `flight`, the height of the sighting tells whether the ball flies."""
         rises = velocity_m_s is not None and (self.flight is None or self.flight.lift_m_s > 0.0)
         self.filter = self._new(sighting.position_m, sighting.covariance_m2, velocity_m_s)
-        self.flight = Flight.of_sight(sighting.height_m, rises)
+        self.flight = flight or Flight.of_sight(sighting.height_m, rises)
         self.doubts = ()
         self._confirm(sighting)
 

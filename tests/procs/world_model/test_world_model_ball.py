@@ -118,6 +118,33 @@ def test_moved_ball_is_found_with_the_second_sighting() -> None:
     assert tracker.track.state[:2] == pytest.approx((-3.0, 0.0), abs=0.05)
 
 
+@pytest.mark.parametrize(("runs_on", "found"), [(False, True), (True, False)])
+def test_moving_ball_that_met_something_is_found_at_once(runs_on: bool, found: bool) -> None:
+    """Something turns a ball of 5 m/s aside; one sighting tells, unless a mate sees the ball run on."""
+    tracker, place_m = BallTracker(), np.zeros(2)
+    for frame in range(12):
+        tracker.advance(PERIOD_S, 2.0)
+        place_m = np.array((5.0 * PERIOD_S * frame, 0.0))
+        if frame < 11 or runs_on:
+            tracker.see(Sighting("mate", False, place_m, np.eye(2) * 0.03**2))
+    aside_m = place_m + np.array((-0.1, 0.35))
+    tracker.see(Sighting("other", False, aside_m, np.eye(2) * 0.02**2))
+    assert tracker.track.state[:2] == pytest.approx(aside_m if found else place_m, abs=0.05)
+    if found:
+        assert tracker.track.state[3] > 2.0
+
+
+def test_resting_ball_does_not_jump_to_one_sighting() -> None:
+    """A mate errs about its place, and sees a resting ball elsewhere."""
+    tracker = BallTracker()
+    for _ in range(12):
+        tracker.advance(PERIOD_S, 2.0)
+        tracker.see(Sighting("me", True, np.zeros(2), np.eye(2) * 0.02**2))
+    tracker.advance(PERIOD_S, 2.0)
+    tracker.see(Sighting("mate", False, np.array((0.5, 0.0)), np.eye(2) * 0.02**2))
+    assert tracker.track.state == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=0.05)
+
+
 def test_own_sighting_precedes_an_equally_accurate_mate() -> None:
     tracker = BallTracker()
     own, other = np.array((1.0, 1.0)), np.array((2.5, 1.0))

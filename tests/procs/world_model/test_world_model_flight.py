@@ -183,6 +183,32 @@ def test_lob_that_met_something_is_found_with_one_sighting() -> None:
     assert tracker.flight.height_m == pytest.approx(0.3)
 
 
+def test_lob_that_met_something_keeps_its_height() -> None:
+    """Something turns a lob aside a moment after the kick: the way over the ground is new, the parabola is not."""
+    tracker = just_lobbed(LIFT_M_S)
+    for _ in range(3):
+        tracker.advance(PERIOD_S, 2.0)
+    before = tracker.flight
+    assert before is not None
+    place_m = tracker.track.state[:2] + np.array((-0.3, 0.5))
+    tracker.see(Sighting("a", True, place_m, np.eye(2) * 0.02**2, height_m=before.height_m, observer_m=EYE_M))
+    assert tracker.track.state[:2] == pytest.approx(place_m, abs=0.02)
+    assert tracker.flight is not None
+    assert tracker.flight.lift_m_s == pytest.approx(before.lift_m_s, abs=0.02)
+
+
+def test_ball_on_the_ground_ends_a_flight_of_uncertain_place() -> None:
+    """A robot believes in a long lob; another sees the ball on the ground, where it may well be."""
+    tracker = just_lobbed(LIFT_M_S)
+    for _ in range(4):
+        tracker.advance(PERIOD_S, 2.0, contact=1.0)
+    assert tracker.flight is not None
+    place_m = tracker.track.state[:2] + 0.3
+    tracker.see(Sighting("a", True, place_m, np.eye(2) * 0.02**2, observer_m=EYE_M))
+    assert tracker.track.state[:2] == pytest.approx(place_m, abs=0.1)
+    assert tracker.flight is None
+
+
 def test_ball_leaves_the_ground_only_with_a_reason() -> None:
     tracker = BallTracker()
     walls = Walls.of(Field(), BALL)

@@ -111,9 +111,16 @@ def test_walls_stand_at_the_border_of_the_field() -> None:
 
 @pytest.mark.parametrize(
     ("place_m", "near"),
-    [((11.85, 3.0), True), ((0.0, -7.85), True), ((11.0, 1.3), True), ((10.5, 0.0), False), ((0.0, 7.0), False)],
+    [
+        ((11.85, 3.0), True),
+        ((0.0, -7.85), True),
+        ((11.0, 1.3), True),
+        ((10.5, 0.0), True),
+        ((9.8, 0.0), False),
+        ((0.0, 7.0), False),
+    ],
 )
-def test_ball_is_near_walls_and_posts_only(place_m: tuple[float, float], near: bool) -> None:
+def test_ball_is_near_walls_posts_and_keepers_only(place_m: tuple[float, float], near: bool) -> None:
     tracker = BallTracker()
     tracker.advance(PERIOD_S, 2.0)
     tracker.hold("me", np.array((*place_m, 0.0, 0.0)), np.eye(4) * 1e-6)
