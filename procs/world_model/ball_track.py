@@ -26,7 +26,7 @@ from procs.model.field import Field
 from procs.model.frames import Floats
 from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
-from procs.world_model.ball_modes import Contact
+from procs.world_model.ball_modes import Contact, Mode
 from procs.world_model.contact import Robots
 from procs.world_model.flight import Flight
 from procs.world_model.seen import Seen
@@ -42,6 +42,7 @@ _BELOW_M = 0.3  # something on the ground is right below a ball in the air only 
 _NEVER_US = -(1 << 60)
 _WALL_BOUNCE, _NET_BOUNCE = 0.5, 0.05  # shares of the speed that they leave
 _INSIDE_M = 1.0  # a ball that far from the walls is within them whatever its model
+_RESTS = 0.5  # a ball that is more likely than that at rest stays where it lies
 _POST_M = 0.2  # a ball touches a post at most that far from it
 _KEEPER_M = 1.0  # a keeper that no camera sees may stand so far in front of its goal
 _MARGIN_M, _MOST_M = 0.05, 0.2  # of a ball near a wall; a less certain place counts as if it were that certain
@@ -93,13 +94,17 @@ class Walls:
         ball.stay_within(self.net_x_m if in_goal else self.x_m, self.y_m, _NET_BOUNCE if in_goal else _WALL_BOUNCE)
 
     def near(self, ball: BallFilter, duration_s: float) -> bool:
-        """Returns whether the ball may reach a wall, a net, a post or an unseen keeper within `duration_s`."""
+        """Returns whether the ball may reach a wall, a net, a post or an unseen keeper within `duration_s`.
+
+        Walls and posts do not move a ball that rests beside them.
+        """
         (x_m, y_m, vx_m_s, vy_m_s), covariance = map(abs, ball.state.tolist()), ball.covariance
         margin_m = _MARGIN_M + duration_s * math.hypot(vx_m_s, vy_m_s)
         margin_m += min(_MOST_M, math.sqrt(2 * (covariance[0, 0] + covariance[1, 1])))
         at_posts = x_m > self.goal_x_m - margin_m and abs(y_m - self.goal_half_width_m) < margin_m + _POST_M
+        at_wall = x_m > self.x_m - margin_m or y_m > self.y_m - margin_m
         at_goal = x_m > self.goal_x_m - _KEEPER_M - margin_m and y_m < self.goal_half_width_m + margin_m
-        return bool(x_m > self.x_m - margin_m or y_m > self.y_m - margin_m or at_posts or at_goal)
+        return bool(at_goal or (ball.weights[Mode.RESTS] < _RESTS and (at_posts or at_wall)))
 
 
 @dataclass(frozen=True)

@@ -125,3 +125,20 @@ def test_ball_is_near_walls_posts_and_keepers_only(place_m: tuple[float, float],
     tracker.advance(PERIOD_S, 2.0)
     tracker.hold("me", np.array((*place_m, 0.0, 0.0)), np.eye(4) * 1e-6)
     assert Walls.of(Field(), BALL).near(tracker.track, PERIOD_S) is near
+
+
+def unseen_at(place_m: tuple[float, float]) -> BallTracker:
+    """Returns the tracker of a ball that was seen at rest for 1.5 s, and then not for 1.5 s."""
+    tracker, walls = BallTracker(), Walls.of(Field(), BALL)
+    for frame in range(60):
+        near = tracker.known and walls.near(tracker.track, PERIOD_S)
+        tracker.advance(PERIOD_S, 5.0, contact=float(near), walls=walls)
+        if frame < 30:
+            tracker.see(Sighting("me", True, np.array(place_m), np.eye(2) * 0.03**2))
+    return tracker
+
+
+def test_ball_at_rest_is_as_certain_at_a_wall_as_elsewhere() -> None:
+    at_wall, elsewhere = unseen_at((3.0, 7.85)).track, unseen_at((3.0, 3.0)).track
+    assert at_wall.state[:2] == pytest.approx((3.0, 7.85), abs=0.03)
+    assert at_wall.covariance[0, 0] == pytest.approx(elsewhere.covariance[0, 0], rel=0.1)
