@@ -38,6 +38,7 @@ _LATE_S = 0.03  # time by which a track lies behind a ball that was kicked
 _OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
 _AT_ONCE_US = 20_000  # robots that saw a ball within that time saw it at one place
 _MOVES_M_S = 1.0  # a slower ball that seems to jump is more likely seen by a robot that errs about its own place
+_FLIES_M = 0.1  # a ball that seems to be lower in the air may lie, and be hidden in part
 _BELOW_M = 0.3  # something on the ground is right below a ball in the air only if the ball's place is that certain
 _NEVER_US = -(1 << 60)
 _WALL_BOUNCE, _NET_BOUNCE = 0.5, 0.05  # shares of the speed that they leave
@@ -310,7 +311,8 @@ class BallTrack:
         velocity_m_s = self._velocity_to(sighting, self.time_us)
         if velocity_m_s is None or self._contradicted(sighting.robot, self.time_us - _AT_ONCE_US):
             return False
-        if flight is None and math.hypot(vx_m_s, vy_m_s) <= _MOVES_M_S:
+        flies = flight is not None and flight.height_m > _FLIES_M
+        if not flies and math.hypot(vx_m_s, vy_m_s) <= _MOVES_M_S:
             return False
         if flight is not None and self.filter.copy().see(sighting.position_m, sighting.of_flying_m2()):
             return False

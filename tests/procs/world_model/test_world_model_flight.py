@@ -197,6 +197,22 @@ def test_lob_that_met_something_keeps_its_height() -> None:
     assert tracker.flight.lift_m_s == pytest.approx(before.lift_m_s, abs=0.02)
 
 
+def test_slow_ball_that_seems_to_fly_low_does_not_jump() -> None:
+    """A robot sees a half hidden ball in the air for a moment; another errs about the ball's place."""
+    tracker = BallTracker()
+    for _ in range(20):
+        tracker.advance(PERIOD_S, 2.0)
+        tracker.see(Sighting("a", False, np.zeros(2), np.eye(2) * 0.02**2, observer_m=EYE_M))
+    tracker.see(Sighting("b", False, np.zeros(2), np.eye(2) * 0.05**2, height_m=0.06, observer_m=EYE_M))
+    tracker.advance(PERIOD_S / 2, 2.0)
+    for _ in range(2):
+        tracker.see(Sighting("a", False, np.zeros(2), np.eye(2) * 0.02**2, observer_m=EYE_M))
+    assert tracker.flight is not None
+    tracker.advance(PERIOD_S / 2, 2.0)
+    tracker.see(Sighting("b", False, np.array((0.6, 0.0)), np.eye(2) * 0.05**2, observer_m=EYE_M))
+    assert tracker.track.state == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=0.1)
+
+
 def test_ball_on_the_ground_ends_a_flight_of_uncertain_place() -> None:
     """A robot believes in a long lob; another sees the ball on the ground, where it may well be."""
     tracker = just_lobbed(LIFT_M_S)
