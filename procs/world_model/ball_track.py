@@ -216,7 +216,6 @@ class BallTrack:
         elif (fitting := next(filter(self._fits, (sighting, *others)), None)) is not None:
             self._confirm(fitting)
         elif self.time_us - self.seen_us > _LOST_US:
-            self.confirmed = {}
             self._begin(sighting)
         elif not self._overruled(sighting) and not self._struck(sighting):
             self._doubt(sighting)
@@ -293,7 +292,6 @@ class BallTrack:
             spread_m = 3 * np.sqrt(np.trace(sighting.covariance_m2 + other.covariance_m2))
             near = np.hypot(*(sighting.position_m - other.position_m)) <= _FASTEST_M_S * between_s + spread_m
             if near and (other.robot != sighting.robot or not self._contradicted(sighting.robot, exposed_us)):
-                self.confirmed = {}
                 self._begin(other, self._velocity_to(other, exposed_us))
                 self._advance(between_s, Step(rolling_m_s2=self.ball.rolling_m_s2))
                 self._fits(sighting)
@@ -316,7 +314,6 @@ class BallTrack:
             return False
         if flight is not None and self.filter.copy().see(sighting.position_m, sighting.of_flying_m2()):
             return False
-        self.confirmed = {}
         self._begin(sighting, velocity_m_s, flight and flight.seen(sighting.height_m))
         return True
 
@@ -334,7 +331,7 @@ class BallTrack:
         rises = velocity_m_s is not None and (self.flight is None or self.flight.lift_m_s > 0.0)
         self.filter = self._new(sighting.position_m, sighting.covariance_m2, velocity_m_s)
         self.flight = flight or Flight.of_sight(sighting.height_m, rises)
-        self.doubts = ()
+        self.confirmed, self.doubts = {}, ()
         self._confirm(sighting)
 
     def _confirm(self, sighting: Sighting) -> None:
