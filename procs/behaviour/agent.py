@@ -103,10 +103,9 @@ class Agent(Component):
             return greedy.decide(view, game, held, field)
         idle = roles.Job(self.role.value.role or roles.DEFENDER, view.own.place)
         if self._company.watch(view, self.clock.iteration_s) and view.localized:
-            job = job_among_silent(view, rank_of(self._robot, self.config.players), field)
+            job = job_among_silent(view, rank_of(self._robot, self.config.players), field, game)
         else:
-            presses = self.config.use_pressing and game.free_play
-            job = roles.assign(view, field, presses).get(self._robot, idle)
+            job = roles.assign(view, field, self.config.use_pressing, game).get(self._robot, idle)
         if not self.config.use_roles and game.free_play and job.role != roles.GOALKEEPER:
             job = roles.Job(roles.ATTACKER, view.ball.place)
         order = self._tactics.decide(view, game, job, held, self.clock.iteration_s)

@@ -4,7 +4,8 @@ import math
 from collections.abc import Mapping
 
 from procs.behaviour import ballistics
-from procs.behaviour.formation import places
+from procs.behaviour.game import Game
+from procs.behaviour.posts import PLAY, posts
 from procs.behaviour.roles import (
     ATTACKER,
     DEFENDER,
@@ -44,7 +45,7 @@ def rank_of(robot: str, players: Mapping[str, Player]) -> int:
     return sum(player.team == team and player.number < number for player in players.values())
 
 
-def job_among_silent(view: View, rank: int, field: Field) -> Job:
+def job_among_silent(view: View, rank: int, field: Field, game: Game = PLAY) -> Job:
     """Returns the job of a robot that hears no mate.
 
     The lowest number of the players keeps the goal. Another attacks if it meets the ball before the mates that it
@@ -58,7 +59,6 @@ def job_among_silent(view: View, rank: int, field: Field) -> Job:
     own_s = time_to_ball_s(view.own, view.ball, course) - _STAY_S * (view.own.role == ATTACKER)
     if own_s <= mates_s and view.own.role != PASSER:
         return Job(ATTACKER, view.ball.place)
-    flank = math.copysign(1.0, -view.ball.place.y_m)
-    posts = places(view.ball.place, mates_s <= opponents_time_s(view, course), flank, field)
-    post = (rank - 1) % len(posts)
-    return Job(DEFENDER if post else SUPPORTER, posts[post])
+    found = posts(1, view, field, game, mates_s <= opponents_time_s(view, course))
+    post = (rank - 1) % len(found)
+    return Job(DEFENDER if post else SUPPORTER, found[post])

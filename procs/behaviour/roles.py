@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from procs.behaviour import ballistics
-from procs.behaviour.formation import further_places, places
+from procs.behaviour.game import Game
 from procs.behaviour.passing import taken
+from procs.behaviour.posts import PLAY, posts
 from procs.behaviour.view import Ball, Robot, View
 from procs.model.field import Field, Point
 from procs.model.robot import ABSENT
@@ -20,8 +21,7 @@ _HAS_BALL_M = 0.45
 _ROLLS_M_S = 0.6  # the nearest robot takes a slower ball, whatever was agreed
 _STAY_S = 0.6  # an attacker keeps its role unless another is so much faster at the ball
 _STAY_PRESSING_S = 0.3  # a second attacker stays until the team is so much sooner at the ball
-_MIDDLE_M = 1.5  # a ball no further from the middle leaves the supporter on its flank
-_STAY_M = 1.0  # a robot keeps its place in the formation unless a change saves this much distance
+_STAY_M = 1.0  # a robot keeps its role in the formation unless a change saves this much distance
 _FEW = 5  # of so few robots all orders are tried
 _AGREED_M = 20.0  # the same for a robot that has accepted a pass
 
@@ -34,13 +34,14 @@ class Job(NamedTuple):
     """Default place of the role."""
 
 
-def assign(view: View, field: Field, presses: bool = False) -> dict[str, Job]:
+def assign(view: View, field: Field, presses: bool = False, game: Game = PLAY) -> dict[str, Job]:
     """Jobs of the own robot, if it is localized, and of its mates, by name.
 
     The lowest number keeps the goal unless it is alone; no other does while that one is on the field and does not play,
     as field players may not stay in the areas. Of the others the receiver of a pass on its way attacks, else the robot
-    that meets the ball first. A team that `presses` sends a second robot if an opponent is at the ball sooner. The rest
-    fill the formation so that they drive little. The order of the mates does not matter.
+    that meets the ball first. A team that `presses` sends a second robot in play if an opponent is at the ball sooner.
+    The rest fill the formation, at set pieces within the rules, so that they drive little. The order of the mates does
+    not matter.
     """
     present = [robot for robot in (*view.mates, view.own) if robot is not view.own or view.localized]
     team = sorted((robot for robot in present if robot.role != ABSENT), key=lambda robot: robot.name)
@@ -60,14 +61,13 @@ def assign(view: View, field: Field, presses: bool = False) -> dict[str, Job]:
     theirs_s = opponents_time_s(view, course)
     ours = times_s[attacker.name] <= theirs_s
     pressing_s = _STAY_PRESSING_S if any(robot.role == ATTACKER for robot in team) else 0.0
-    if presses and len(team) > 1 and theirs_s < times_s[attacker.name] + pressing_s:
+    if presses and game.free_play and len(team) > 1 and theirs_s < times_s[attacker.name] + pressing_s:
         second = _first_at_ball(team, times_s)
         jobs[second.name] = Job(ATTACKER, view.ball.place)
         team.remove(second)
-    flank = _flank(view, team)
-    posts = places(view.ball.place, ours, flank, field)
-    posts += further_places(len(team) - len(posts), posts, view.ball.place, flank, field)
-    jobs.update(_fill(team, [Job(DEFENDER if number else SUPPORTER, post) for number, post in enumerate(posts)]))
+    supporter = next((robot for robot in team if robot.role == SUPPORTER), None)
+    found = posts(len(team), view, field, game, ours, supporter)
+    jobs.update(_fill(team, [Job(DEFENDER if number else SUPPORTER, post) for number, post in enumerate(found)]))
     return jobs
 
 
@@ -105,30 +105,24 @@ def opponents_time_s(view: View, course: ballistics.Course) -> float:
     return min((course.meet(other.place, other.velocity_m_s).time_s for other in view.opponents), default=math.inf)
 
 
-def _flank(view: View, team: Sequence[Robot]) -> float:
-    """Returns the supporter's side of the field, -1 or 1: away from the ball; near the middle, the side where it is."""
-    supporter = next((robot for robot in team if robot.role == SUPPORTER), None)
-    aside_m = supporter.place.y_m if supporter and abs(view.ball.place.y_m) < _MIDDLE_M else -view.ball.place.y_m
-    return math.copysign(1.0, aside_m)
-
-
-def _fill(team: Sequence[Robot], posts: Sequence[Job]) -> dict[str, Job]:
-    """Returns the job of each robot; there are at least as many posts, and the most important ones are filled."""
+def _fill(team: Sequence[Robot], jobs: Sequence[Job]) -> dict[str, Job]:
+    """Returns the job of each robot; there are at least as many jobs, and the most important ones are filled."""
+    ways_m = [[_way_m(robot, job) for job in jobs] for robot in team]
     orders = itertools.permutations(range(len(team)))
     if len(team) <= _FEW:
-        best = min(orders, key=lambda order: (_way_m(team, posts, order), order))
+        best = min(orders, key=lambda order: (_whole_m(ways_m, order), order))
     else:
-        best = _exchanged(team, posts, next(orders))
-    return {robot.name: posts[index] for robot, index in zip(team, best, strict=True)}
+        best = _exchanged(ways_m, next(orders))
+    return {robot.name: jobs[index] for robot, index in zip(team, best, strict=True)}
 
 
-def _exchanged(team: Sequence[Robot], posts: Sequence[Job], order: tuple[int, ...]) -> tuple[int, ...]:
-    """Returns the order after all exchanges of two posts that save way: a large team has too many orders to try all."""
+def _exchanged(ways_m: Sequence[Sequence[float]], order: tuple[int, ...]) -> tuple[int, ...]:
+    """Returns the order after all exchanges of two jobs that save way: a large team has too many orders to try all."""
     pairs = list(itertools.combinations(range(len(order)), 2))
     while True:
         others = [_with_exchange(order, *pair) for pair in pairs]
-        best = min(others, key=lambda other: (_way_m(team, posts, other), other))
-        if _way_m(team, posts, best) >= _way_m(team, posts, order):
+        best = min(others, key=lambda other: (_whole_m(ways_m, other), other))
+        if _whole_m(ways_m, best) >= _whole_m(ways_m, order):
             return order
         order = best
 
@@ -139,10 +133,11 @@ def _with_exchange(order: tuple[int, ...], one: int, two: int) -> tuple[int, ...
     return tuple(changed)
 
 
-def _way_m(team: Sequence[Robot], posts: Sequence[Job], order: Sequence[int]) -> float:
-    way_m = 0.0
-    for robot, index in zip(team, order, strict=False):
-        post = posts[index]
-        stay_m = _AGREED_M if robot.agreement.passer else _STAY_M
-        way_m += math.dist(robot.place, post.place) - stay_m * (robot.role == post.role)
-    return way_m
+def _whole_m(ways_m: Sequence[Sequence[float]], order: Sequence[int]) -> float:
+    return sum(ways_m[number][index] for number, index in enumerate(order))
+
+
+def _way_m(robot: Robot, job: Job) -> float:
+    """Returns the distance from a robot to a job's place; less for a job of the robot's present role."""
+    stay_m = _AGREED_M if robot.agreement.passer else _STAY_M
+    return math.dist(robot.place, job.place) - stay_m * (robot.role == job.role)

@@ -30,6 +30,7 @@ _SETTLED_S = 0.14  # a ball that was caught so long ago does not bounce off when
 _FUMBLED_M = 0.4  # the ball of a set piece that is so far from its spot has been taken
 _NEAR_M = 1.0  # the taker this near to such a ball has taken it itself
 _LEAVING_M, _GENTLE_M_S = 1.5, 1.0  # while a rival is so near to the ball, the taker comes so slowly
+_BLOCKED_S = 0.4  # a rival that drives past does not change the plan of a set piece
 _BESIDE_M = (0.2, 0.8)  # a ball laid less far from the spot lies on it; one further away is put back
 _HOME_M = 1.0  # a goalkeeper this near to its penalty area goes straight home, even at a set piece
 KEEPER_OUT_M = 2.3
@@ -53,6 +54,7 @@ class Tactics:
         self._receiver = ""  # of the own set piece
         self._planned: tuple[str, Point] | None = None
         self._planned_for = -1
+        self._blocked_s = 0.0  # the way of the planned pass
         self._barred_s = 0.0
         self._passed_s = 0.0
         self._held_s = math.inf  # since the ball was caught
@@ -79,6 +81,7 @@ class Tactics:
         if not game.free_play:
             self._taking = game.whose is Whose.OURS and job.role == ATTACKER and not self.passing.said.passer
             self._penalty = game.state is State.PENALTY
+            self._blocked_s = self._blocked_s + duration_s if self._blocked(view, game) else 0.0
         elif not holds_ball:
             self._taking, self._receiver = False, ""
         before, self._last = self._last, self._order(view, game, job, holds_ball)
@@ -178,8 +181,8 @@ class Tactics:
 
     def _plan(self, view: View, game: Game) -> tuple[str, Point] | None:
         """Returns the variant of the own set piece and the receiver's place, chosen while the game is stopped."""
-        if game.number != self._planned_for or (game.stopped and self._blocked(view, game)):
-            self._planned_for = game.number
+        if game.number != self._planned_for or (game.stopped and self._blocked_s > _BLOCKED_S):
+            self._planned_for, self._blocked_s = game.number, 0.0
             self._planned = set_pieces.choose(game, view.opponents, self.field, view.bodies)
         return self._planned
 
@@ -194,12 +197,7 @@ class Tactics:
         if game.whose is not Whose.OURS:
             return place
         told = [mate.agreement.place for mate in view.mates if mate.name == self.passing.said.passer]
-        if told:
-            return formation.helper_place(told[0], game, self.field)
-        if job.role != SUPPORTER:
-            return place
-        planned = set_pieces.choose(game, (), self.field, view.bodies)
-        return planned[1] if planned else place
+        return formation.helper_place(told[0], game, self.field) if told else place
 
     def _play_ball(self, view: View) -> Order:
         if self._taking and self._penalty:

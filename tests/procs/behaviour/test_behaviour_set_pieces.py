@@ -7,7 +7,8 @@ import pytest
 from procs.behaviour import set_pieces
 from procs.behaviour.bodies import USUAL
 from procs.behaviour.game import Game, Whose
-from procs.behaviour.roles import ATTACKER, GOALKEEPER, SUPPORTER
+from procs.behaviour.posts import posts
+from procs.behaviour.roles import ATTACKER, GOALKEEPER, SUPPORTER, Job
 from procs.behaviour.set_pieces import BOOK
 from procs.behaviour.tactics import Tactics
 from procs.behaviour.view import Agreement, View
@@ -79,7 +80,8 @@ def test_receiver_goes_where_the_taker_says(state: State) -> None:
     asks = taker._replace(agreement=Agreement("cyan3", said.place))
     for mate, place in ((taker, places[0]), (asks, places[1])):
         seen = view(supporter, ball(*game.spot), (mate,), (rival,))
-        order = receiver_tactics.decide(seen, game, job(SUPPORTER), False, 0.05)
+        post = posts(1, seen, FIELD, game, sooner=True, supporter=supporter)[0]
+        order = receiver_tactics.decide(seen, game, Job(SUPPORTER, post), False, 0.05)
         assert math.dist(order.place, place) < 0.01 or math.dist(order.place, supporter.place) <= 1.6, "on its way"
     assert receiver_tactics.passing.said.passer == "cyan2"
 
@@ -93,6 +95,22 @@ def test_plan_of_a_set_piece_is_kept_once_it_may_be_taken() -> None:
     rival = robot("", *between(game.spot, before, 0.6))
     tactics.decide(seen._replace(opponents=(rival,)), game._replace(stopped=False), job(ATTACKER), False, 0.05)
     assert tactics.passing.said.place == before
+
+
+def test_rival_that_drives_past_does_not_change_the_plan() -> None:
+    game = Game(State.KICK_OFF, stopped=True, whose=Whose.OURS, number=4)
+    tactics, supporter = Tactics(FIELD), robot("cyan3", -2.0, 1.5, role=SUPPORTER)
+    free = view(robot("cyan2", 0.7, 0.0, math.pi), ball(0.0, 0.0), (supporter,))
+
+    def planned(seen: View, ticks: int) -> Point:
+        for _ in range(ticks):
+            tactics.decide(seen, game, job(ATTACKER), False, 0.05)
+        return tactics.passing.said.place
+
+    before = planned(free, 1)
+    blocked = free._replace(opponents=(robot("", *between(game.spot, before, 0.6)),))
+    assert planned(blocked, 5) == planned(free, 1) == planned(blocked, 5) == before
+    assert planned(blocked, 10) != before
 
 
 def two_robots(x_m: float, heading_rad: float = 0.0) -> View:

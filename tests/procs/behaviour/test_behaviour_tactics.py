@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from procs.behaviour import formation
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.order import Order
+from procs.behaviour.posts import posts
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER
 from procs.behaviour.tactics import Tactics
 from procs.behaviour.view import Ball, Robot, View
@@ -182,7 +182,7 @@ def test_taker_keeps_to_one_receiver_when_the_first_is_blocked() -> None:
 )
 def test_receiver_of_a_set_piece_sees_ball_and_goal(spot: Point, most_rad: float) -> None:
     game = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=spot)
-    place = decide(view(robot("cyan3", *formation.layoff_place(game, FIELD)), ball(*spot)), game, SUPPORTER).place
+    place = posts(1, view(robot("cyan3", 0.0, 0.0), ball(*spot)), FIELD, game, sooner=True)[0]
     turn_rad = wrap_rad(bearing_rad(place, spot) - bearing_rad(place, FIELD.goal_centre(1.0)))
     assert math.dist(place, spot) > 2.0
     assert FIELD.in_field(*place)
