@@ -21,13 +21,12 @@ def posts(
 
     `sooner`: the team is sooner at the ball; the supporter then offers itself ahead of it. At a set piece nothing that
     robots do on their ways changes the places: neither who is sooner, nor where the ball is carried to its spot, nor on
-    which side the supporter drives.
+    which side the supporter drives. A dropped ball counts as the other team's.
     """
     if game.free_play:
         return _formation(count, view.ball.place, sooner, _flank(view.ball.place, supporter), field)
     received = _receiver_place(view, field, game, supporter)
-    ours = sooner if game.whose is Whose.NEITHER else game.whose is Whose.OURS
-    found = _formation(count, game.spot, ours, _set_piece_flank(game, received), field)
+    found = _formation(count, game.spot, game.whose is Whose.OURS, _set_piece_flank(game, received), field)
     if received:
         found[0] = received
     return [formation.helper_place(place, game, field) for place in found]
