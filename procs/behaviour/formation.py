@@ -153,13 +153,15 @@ def first_opponent_place(game: Game, field: Field) -> Point:
     return allowed(ahead(game.spot, bearing_rad(game.spot, field.goal_centre(-1.0)), _keep_off_m(game)), game, field)
 
 
-def helper_place(place: Point, game: Game, field: Field) -> Point:
-    """Returns the place of a robot that is not the nearest of its team: one near `place` that the rules allow."""
+def helper_place(place: Point, game: Game, field: Field, taken: Sequence[Point] = ()) -> Point:
+    """Returns the place of a robot that is not the nearest of its team: one near `place` that the rules allow.
+
+    It is apart from the places of mates that are `taken`, and from that of the nearest robot.
+    """
     place = allowed(place, game, field)
-    if game.whose is not Whose.THEIRS:
-        return place
-    first = first_opponent_place(game, field)
-    return place if math.dist(place, first) >= _APART_M else _around(place, game, field, first)
+    if game.whose is not Whose.OURS:
+        taken = [*taken, first_opponent_place(game, field)]
+    return place if _is_apart(place, taken) else _around(place, game, field, taken)
 
 
 def allowed(place: Point, game: Game, field: Field) -> Point:
@@ -227,15 +229,18 @@ def _in_area(place: Point, field: Field) -> bool:
     return any(field.in_penalty_area(*place, side, _AREA_M) for side in SIDES)
 
 
-def _around(place: Point, game: Game, field: Field, taken: Point | None = None) -> Point:
+def _around(place: Point, game: Game, field: Field, taken: Sequence[Point] = ()) -> Point:
     """Returns the nearest place at the same distance from the ball that is outside the areas and apart from `taken`."""
     distance_m, way_rad = math.dist(game.spot, place), bearing_rad(game.spot, place)
     for turn_rad in _TURNS_RAD:
         other = ahead(game.spot, way_rad + turn_rad, distance_m)
-        apart = taken is None or math.dist(other, taken) >= _APART_M
-        if apart and field.in_field(*other) and not _in_area(other, field):
+        if _is_apart(other, taken) and field.in_field(*other) and not _in_area(other, field):
             return other
     return place
+
+
+def _is_apart(place: Point, taken: Sequence[Point]) -> bool:
+    return all(math.dist(place, other) >= _APART_M for other in taken)
 
 
 def _keep_off_m(game: Game) -> float:

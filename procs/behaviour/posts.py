@@ -29,7 +29,10 @@ def posts(
     found = _formation(count, game.spot, game.whose is Whose.OURS, _set_piece_flank(game, received), field)
     if received:
         found[0] = received
-    return [formation.helper_place(place, game, field) for place in found]
+    places: list[Point] = []
+    for place in found:
+        places.append(formation.helper_place(place, game, field, places))
+    return places
 
 
 def _formation(count: int, ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:

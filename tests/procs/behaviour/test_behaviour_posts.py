@@ -43,6 +43,25 @@ def test_posts_of_a_kick_off_are_apart_on_both_sides(number: int) -> None:
     assert receiver.y_m * sweeper.y_m < 0.0
 
 
+@pytest.mark.parametrize(
+    ("state", "whose", "spot"),
+    [
+        (State.FREE_KICK, Whose.OURS, Point(-7.4, -2.0)),
+        (State.FREE_KICK, Whose.OURS, Point(-7.4, 0.0)),
+        (State.FREE_KICK, Whose.THEIRS, Point(-7.4, 2.0)),
+        (State.PENALTY, Whose.THEIRS, Point(-7.4, 0.0)),
+        (State.DROP_BALL, Whose.NEITHER, Point(-7.4, 0.0)),
+    ],
+)
+@pytest.mark.parametrize("number", NUMBERS)
+def test_posts_before_the_own_area_are_apart(state: State, whose: Whose, spot: Point, number: int) -> None:
+    """Mates once pushed each other for one place: the rules moved the places of both to the same."""
+    game = Game(state, stopped=True, whose=whose, spot=spot, number=number)
+    found = posts(3, view(TAKER, ball(*spot)), FIELD, game, sooner=False)[:3]
+    nearest = [] if whose is Whose.OURS else [formation.first_opponent_place(game, FIELD)]
+    assert min(math.dist(*pair) for pair in itertools.combinations(found + nearest, 2)) >= 1.0
+
+
 def test_place_that_the_taker_tells_moves_the_other_posts() -> None:
     """Whoever hears of it goes to the other side, and not to the place of the receiver."""
     game, supporter = kick_off(Whose.OURS), robot("magenta3", -2.0, 2.0, role=SUPPORTER)
