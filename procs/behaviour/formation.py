@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Sequence
 
 from procs.behaviour.game import Game, Whose
-from procs.behaviour.path import Disc, find_way
+from procs.behaviour.path import Disc
 from procs.behaviour.shortest import first_turn
 from procs.behaviour.view import Robot
 from procs.model.field import SIDES, Field, Point
@@ -13,6 +13,7 @@ from procs.model.geometry import ahead, bearing_rad, between, clamp
 
 _OWN_SET_PIECE_M, _THEIR_SET_PIECE_M, _DROPPED_BALL_M = 2.3, 3.3, 1.3
 """Distances from the ball of a set piece: those of the rules and 0.3 m more."""
+_PASSES_M, _TOO_NEAR_M = 0.1, 0.15  # a robot passes the circle, or is too near and leaves it, so much nearer
 _TAKER_M = 0.75  # from the middle of a waiting taker to the ball
 _LAYOFF_M, _LAYOFF_RAD = 2.4, (0.55, 0.8, 1.1, 1.5)
 """Distance of the receiver from the ball of the own set piece, and its least angle off the straight way back."""
@@ -191,19 +192,18 @@ def next_step(own: Point, place: Point, game: Game, field: Field, others: Iterab
     """
     if game.free_play:
         return place
-    circle = Disc(game.spot, _keep_off_m(game) - 0.1)
-    if math.dist(own, game.spot) < circle.radius_m:
-        return _way_out(own, game, field, circle.radius_m + 0.1, [other.place for other in others])
-    if game.state is State.KICK_OFF and own.x_m > 0.0:
-        return _way_home(own, place, circle, field, [other.place for other in others])
-    way = find_way(own, place, [circle])
-    return place if way.length_m <= math.dist(own, place) else ahead(own, way.direction_rad, min(way.length_m, _STEP_M))
+    distance_m, taken = _keep_off_m(game), [other.place for other in others]
+    if math.dist(own, game.spot) < distance_m - _TOO_NEAR_M:
+        return _way_out(own, game, field, distance_m, taken)
+    goes_home = game.state is State.KICK_OFF and own.x_m > 0.0
+    return _way_around(own, place, Disc(game.spot, distance_m - _PASSES_M), field, taken if goes_home else ())
 
 
-def _way_home(own: Point, place: Point, circle: Disc, field: Field, others: Sequence[Point]) -> Point:
-    """Returns the next place on the shortest way out of the wrong half, around the circle and the robots at it.
+def _way_around(own: Point, place: Point, circle: Disc, field: Field, others: Sequence[Point]) -> Point:
+    """Returns the next place on the shortest way in the field around the circle and the robots at it.
 
-    The freest tangent of the circle does not do: where a robot closes it, the detour leads into the circle, and out.
+    The freest tangent of the circle does not do: where a wall or a robot closes it, the detour leads into the circle,
+    and out.
     """
 
     def possible(turn: Point) -> bool:

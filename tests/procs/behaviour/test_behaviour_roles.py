@@ -196,6 +196,20 @@ def test_robot_at_the_wall_leaves_the_ball_along_the_line() -> None:
     assert FIELD.in_field(*step, 0.5)
 
 
+@pytest.mark.parametrize("spot", [Point(-3.15, 5.84), Point(-3.15, -6.9)])
+def test_path_around_a_ball_near_the_wall_is_the_fields_side(spot: Point) -> None:
+    """The way at the wall is too narrow: a robot that tried it drove to and fro there."""
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=spot)
+    own, place = Point(-0.34, math.copysign(7.2, spot.y_m)), Point(-5.6, spot.y_m)
+    for _ in range(100):
+        assert math.dist(own, spot) > 2.1
+        step = formation.next_step(own, place, game, FIELD)
+        share = min(1.0, 0.1 / max(0.1, math.dist(own, step)))
+        x_m, y_m = own.x_m + share * (step.x_m - own.x_m), own.y_m + share * (step.y_m - own.y_m)
+        own = Point(x_m, max(-7.75, min(7.75, y_m)))
+    assert own == pytest.approx(place)
+
+
 def test_robot_before_its_keeper_leaves_the_ball_beside_it() -> None:
     game = Game(State.FREE_KICK, stopped=True, whose=Whose.THEIRS, spot=Point(-7.4, -0.4))
     keeper = robot("cyan1", -10.55, -0.1)
