@@ -164,9 +164,10 @@ class Tactics:
         planned = self._plan(view, game)
         near = [mate for mate in mates if mate.role == SUPPORTER] if planned else []
         best = aim.best_pass(taker, near or mates, view.opponents, view.bodies, math.inf, self._receiver)
-        target = best.place if best else self.field.goal_centre(1.0)
-        self._receiver = best.receiver if best else ""
-        self.passing.announce(self._receiver, planned[1] if planned and near else target)
+        told = planned[1] if planned and near else None  # wherever it drives, also too near or too far for a pass
+        target = best.place if best else told or self.field.goal_centre(1.0)
+        self._receiver = best.receiver if best else near[0].name if near else ""
+        self.passing.announce(self._receiver, told or target)
         way_rad = bearing_rad(game.spot, target)
         if game.state is State.KICK_OFF:  # from the own half
             way_rad = clamp(way_rad, -_KICK_OFF_RAD, _KICK_OFF_RAD)

@@ -86,6 +86,18 @@ def test_receiver_goes_where_the_taker_says(state: State) -> None:
     assert receiver_tactics.passing.said.passer == "cyan2"
 
 
+@pytest.mark.parametrize("supporter", [Point(-0.5, 1.8), Point(-9.0, -4.0)])
+def test_taker_tells_a_receiver_out_of_a_passes_reach(supporter: Point) -> None:
+    """A receiver that did not hear its place while it drove past the ball turned to another, and back."""
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(0.0, 0.0), number=4)
+    seen = view(robot("cyan2", -0.7, 0.0), ball(0.0, 0.0), (robot("cyan3", *supporter, role=SUPPORTER),))
+    tactics = Tactics(FIELD)
+    tactics.decide(seen, game, job(ATTACKER), False, 0.05)
+    said, chosen = tactics.passing.said, set_pieces.choose(game, (), FIELD, USUAL)
+    assert chosen is not None
+    assert (said.receiver, said.place) == ("cyan3", chosen[1])
+
+
 def test_plan_of_a_set_piece_is_kept_once_it_may_be_taken() -> None:
     game = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(0.0, 0.0), number=4)
     tactics, supporter = Tactics(FIELD), robot("cyan3", -2.0, 1.5, role=SUPPORTER)
