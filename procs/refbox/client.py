@@ -10,6 +10,7 @@ from lcmtypes.soccer import game_state_t, referee_command_t, team_message_t, wor
 from procs.model.game_states import State, state_of
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel, team_of_player
 from procs.model.teams import Ends, team_number
+from procs.model.units import US_PER_S
 from procs.refbox.connection import Connection
 from procs.refbox.protocol import PORT, Command, Host, ProtocolError, decode
 from procs.refbox.world_state import best_belief, encode, intention_of, world_state
@@ -68,7 +69,7 @@ class RefBoxClient(Component):
     def init(self) -> None:
         self._connection = Connection(self.clock, self.log)
         self._sent: list[Sent] = []
-        self._reported_us = 0
+        self._reported_us = 0  # when the newest report was due
 
     def loop(self) -> None:
         finished = [call for call in self._sent if call.finished]
@@ -124,7 +125,9 @@ class RefBoxClient(Component):
         heard = [robot for robot, age_s in ages_s.items() if age_s <= _SILENT_S]
         if not heard:
             return
-        self._reported_us = self.clock.now_us
+        now_us, period_us = self.clock.now_us, round(self.config.report_s * US_PER_S)
+        due_us = self._reported_us + period_us  # a report that waited for its tick does not delay the next
+        self._reported_us = due_us if now_us < due_us + period_us else now_us
         beliefs = [self.beliefs[robot].value for robot in heard if robot in self.beliefs]
         belief, game = best_belief(beliefs), self.game_state.value
         report = world_state(

@@ -186,6 +186,21 @@ def test_client_reports_the_robots_of_its_team(refbox: socket.socket) -> None:
         assert state["robots"][0]["pose"][:2] == [0.0, -1.0]  # cyan plays towards negative x
 
 
+def test_reports_are_as_many_as_wanted_whatever_the_period(refbox: socket.socket) -> None:
+    bench = Bench(RefBoxClient, "world/refbox", namespaces=("cyan1",), period_s=0.04, port=refbox.getsockname()[1])
+    bench.iterate(2)
+    connection, _ = refbox.accept()
+    with connection:
+        bench.port("messages", "cyan1").put(number=1)
+        bench.iterate(40)  # 1.6 s
+        bench.finalize()
+        connection.settimeout(5.0)
+        data = b""
+        while more := connection.recv(65_536):
+            data += more
+    assert data.count(b"\0") == 16
+
+
 def test_second_base_station_leaves_commands_to_the_first(refbox: socket.socket) -> None:
     bench = Bench(RefBoxClient, "world/refbox", port=refbox.getsockname()[1], obeys=False)
     bench.iterate()
