@@ -12,7 +12,7 @@ from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel, team_of_playe
 from procs.model.teams import Ends, team_number
 from procs.model.units import US_PER_S
 from procs.refbox.connection import Connection
-from procs.refbox.protocol import PORT, Command, Host, ProtocolError, decode
+from procs.refbox.protocol import PORT, Addresses, Command, Host, ProtocolError, decode
 from procs.refbox.world_state import best_belief, encode, intention_of, world_state
 
 _IGNORED = frozenset({"WELCOME", "IS_ALIVE", "REPAIR_END", "TESTMODE_ON", "TESTMODE_OFF"})
@@ -32,7 +32,7 @@ class ClientConfig(Config):
     """A RefBox that cannot be reached is tried again after this time; only a new reason is logged again."""
     connect_s: PositiveFloat = 1.0
     """A RefBox that does not answer for so long is not there. The game goes on meanwhile."""
-    addresses: dict[str, str] = {"cyan": "224.16.32.1", "magenta": "224.16.32.2"}
+    addresses: Addresses = Addresses()
     """Multicast address that names each team."""
     players: Players = dict(PLAYERS)
     """Team and number of each robot."""
@@ -95,7 +95,7 @@ class RefBoxClient(Component):
     def _hand_on(self, message: bytes) -> str:
         """Hands a command on; returns why the message is no command, or an empty text."""
         try:
-            command = decode(message, self.config.addresses)
+            command = decode(message, self.config.addresses.model_dump())
         except ProtocolError as error:
             return str(error)
         if self.config.obeys and command.name not in _IGNORED:

@@ -8,9 +8,9 @@ answer with world states (`world_state.py`).
 import json
 import re
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple, Self
 
-from pydantic import Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 PORT = 28097
 """Port of the RefBox for base stations."""
@@ -26,6 +26,21 @@ _QUOTED = 60  # characters of a peer's bytes that an error repeats
 
 class ProtocolError(ValueError):
     """Bytes that are not a message of the RefBox."""
+
+
+class Addresses(BaseModel):
+    """Multicast address that names each team in commands."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    cyan: str = Field(default="224.16.32.1", min_length=1)
+    magenta: str = Field(default="224.16.32.2", min_length=1)
+
+    @model_validator(mode="after")
+    def _differ(self) -> Self:
+        if self.cyan == self.magenta:
+            raise ValueError(f"both teams have the address {self.cyan}; give each its own")
+        return self
 
 
 class Command(NamedTuple):

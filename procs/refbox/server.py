@@ -9,7 +9,7 @@ from fwk import Component, Config, Logger, Reads, channel
 from lcmtypes.soccer import game_state_t, match_history_t
 from procs.model.robot import PLAYERS, Players
 from procs.refbox.news import news
-from procs.refbox.protocol import PORT, Command, Host, encode
+from procs.refbox.protocol import PORT, Addresses, Command, Host, encode
 from procs.refbox.station import Station
 
 _BACKLOG = 16  # base stations that may wait to be let in
@@ -24,7 +24,7 @@ class ServerConfig(Config):
     """TCP port; 0: a free port, which the log names."""
     stations: int = Field(default=32, ge=1, le=500)
     """Most base stations at a time; further ones are turned away."""
-    addresses: dict[str, str] = {"cyan": "224.16.32.1", "magenta": "224.16.32.2"}
+    addresses: Addresses = Addresses()
     """Multicast address that names each team."""
     players: Players = dict(PLAYERS)
     """Team and number of each robot."""
@@ -114,7 +114,8 @@ class RefBoxServer(Component):
         station.close()
 
     def _send(self, commands: list[Command], stations: list[Station]) -> None:
-        data = b"".join(encode(command, self.config.addresses) for command in commands)
+        addresses = self.config.addresses.model_dump()
+        data = b"".join(encode(command, addresses) for command in commands)
         for station in stations if data else []:
             if not station.send(data):
                 self._cut_off(station, "left, or did not read what it was sent")

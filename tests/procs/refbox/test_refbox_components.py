@@ -249,6 +249,12 @@ def test_host_that_is_no_name_is_refused(settings: type[Config], host: str) -> N
         settings.model_validate({"host": host})
 
 
+@pytest.mark.parametrize("settings", [ClientConfig, ServerConfig])
+def test_settings_with_one_address_keep_the_other(settings: type[ClientConfig | ServerConfig]) -> None:
+    addresses = settings.model_validate({"addresses": {"cyan": "224.16.32.9"}}).addresses
+    assert (addresses.cyan, addresses.magenta) == ("224.16.32.9", MAGENTA)
+
+
 def test_robots_have_the_numbers_of_the_players(refbox: socket.socket) -> None:
     players = {"anna": {"team": "magenta", "number": 7}}
     bench = Bench(RefBoxClient, "world/refbox", port=refbox.getsockname()[1], players=players)

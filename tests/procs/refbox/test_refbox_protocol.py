@@ -1,13 +1,14 @@
 """The RefBox protocol: bytes, and commands between states of the game."""
 
 import pytest
+from pydantic import ValidationError
 
 from lcmtypes.soccer import game_event_t, game_state_t
 from procs.refbox.news import news
-from procs.refbox.protocol import LONGEST, Command, ProtocolError, Stream, decode, encode
+from procs.refbox.protocol import LONGEST, Addresses, Command, ProtocolError, Stream, decode, encode
 from procs.referee.reasons import Reason
 
-ADDRESSES = {"cyan": "224.16.32.1", "magenta": "224.16.32.2"}
+ADDRESSES = Addresses().model_dump()
 
 
 def state(kind: int, team: int = 0, stopped: bool = True, **more: float) -> game_state_t:
@@ -58,6 +59,13 @@ def test_command_as_bytes_and_back(command: Command, data: bytes) -> None:
 def test_bytes_that_are_no_command(data: bytes, message: str) -> None:
     with pytest.raises(ProtocolError, match=message.replace("[", r"\[")):
         decode(data, ADDRESSES)
+
+
+def test_address_of_one_team_leaves_that_of_the_other() -> None:
+    addresses = Addresses(cyan="224.16.32.9").model_dump()
+    assert addresses == {"cyan": "224.16.32.9", "magenta": "224.16.32.2"}
+    with pytest.raises(ValidationError, match=r"both teams have the address 224\.16\.32\.2; give each its own"):
+        Addresses(cyan="224.16.32.2")
 
 
 def test_stream_is_cut_at_nul_bytes_wherever_they_arrive() -> None:
