@@ -25,6 +25,7 @@ _MAPPING = "it should be a mapping with keys such as 'name: value'"
 @dataclass(frozen=True)
 class _Mistake:
     path: Path
+    location: Path
     text: str
     missing: bool
 
@@ -36,12 +37,14 @@ def validated(model: type[M], node: Node, report: Report, what: str) -> tuple[M,
     nothing is left.
     """
     first = True
+    left_out: set[Path] = set()  # what takes the place of these values, such as a default, is not in the file
     shortened: list[Path] = []  # lists that lost a value: what comes after it has moved
     while True:
         made, mistakes = _tried(model, node, what)
         for mistake in mistakes:
             moved = any(mistake.path[: len(path)] == path for path in shortened)
-            if first or not (mistake.missing or moved):  # missing values may have been left out here
+            replaced = mistake.location in left_out
+            if first or not (mistake.missing or moved or replaced):  # missing values may have been left out here
                 report(mistake.path, node.at(*mistake.path).place, mistake.text)
         if made:
             return made, node
@@ -51,6 +54,7 @@ def validated(model: type[M], node: Node, report: Report, what: str) -> tuple[M,
             dict.fromkeys(mistake.path for mistake in mistakes)
         ):  # from the end, to keep positions in lists valid
             node = _without(node, path)
+            left_out.add(path)
             if isinstance(path[-1], int):
                 shortened.append(path[:-1])
         first = False
@@ -61,10 +65,12 @@ def _tried(model: type[M], node: Node, what: str) -> tuple[M | None, list[_Mista
         made = model.model_validate(node.plain())
     except ValidationError as error:
         return None, [
-            _Mistake(_path(node, found["loc"]), _text(model, node, found, what), found["type"] == "missing")
+            _Mistake(
+                _path(node, found["loc"]), found["loc"], _text(model, node, found, what), found["type"] == "missing"
+            )
             for found in error.errors(include_url=False)
         ]
-    mixed_up = [_Mistake(path, text, False) for path, text in _mixed_up(made.model_dump(), node, ())]
+    mixed_up = [_Mistake(path, path, text, False) for path, text in _mixed_up(made.model_dump(), node, ())]
     return None if mixed_up else made, mixed_up
 
 

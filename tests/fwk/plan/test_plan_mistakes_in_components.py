@@ -82,6 +82,27 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """,
     ),
     Broken(
+        "it.yaml:2: it/a: 'high' is 4; it is below low, 5",
+        """
+        components:
+          it/a: {use: strange:Ranged, config: {low: 5, high: 4}}
+        --- strange.py
+        from fwk import Component, Config, Field
+        from pydantic import field_validator
+        class Range(Config):
+            low: int = 0
+            high: int = 3
+            @field_validator("high")
+            def check(cls, high, info):
+                if high < info.data["low"]:
+                    raise ValueError(f"it is below low, {info.data['low']}")
+                return high
+        class Ranged(Component):
+            stage = "think"
+            config: Range
+        """,
+    ),
+    Broken(
         "it.yaml:1: it/a: no setting 'gain'; there is log_level",
         "components: {it/a: {use: plan_parts:Odometer, config: {gain: 1}}}",
     ),
