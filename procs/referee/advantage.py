@@ -16,8 +16,8 @@ class Advantage:
         return self._foul is not None and team_number(self._foul.robot) is team_number(foul.robot)
 
     def grants(self, foul: Foul, scene: Scene) -> bool:
-        """Holds the foul back if that is of advantage, and returns whether it is; contact always stops the game."""
-        if foul.direct or not _plays(scene, team_number(foul.robot).other):
+        """Holds a foul without contact back if that is of advantage, and returns whether it is."""
+        if not _plays(scene, team_number(foul.robot).other):
             return False
         self._foul, self._left_s = foul, scene.rules.advantage_s
         return True

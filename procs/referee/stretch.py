@@ -63,8 +63,13 @@ class Stretch:
         self._resting_at, self._resting_s = ball, 0.0
 
     def fouls(self, scene: Scene) -> tuple[Foul | None, Foul | None]:
-        """Returns the foul that was committed in the tick, and the foul that is punished now."""
+        """Returns the foul that was committed in the tick, and the foul that is punished now.
+
+        Contact always stops the game, also while another foul is held back.
+        """
         foul, lost = self._book.watch(scene), self._advantage.lost(scene)
+        if foul is not None and foul.direct:
+            return foul, foul
         if foul is None or self._advantage.pends(foul):
             return None, lost
         return foul, lost or (None if self._advantage.grants(foul, scene) else foul)

@@ -362,6 +362,14 @@ def test_advantage_is_over_after_three_seconds() -> None:
     assert script.reasons == []
 
 
+@pytest.mark.parametrize("touches", [False, True])
+def test_contact_stops_the_game_while_a_foul_is_held_back(touches: bool) -> None:
+    script = crowded_area("cyan2")
+    crash = Event(Kind.COLLISION, "magenta2", "cyan2", 9.5, 0.5, 3.5)
+    script.tick(crash, *[Event(Kind.TOUCH, "magenta2", "", *script.ball, 1.0)] * touches)
+    assert (script.state, script.reasons) == ((State.PENALTY, CYAN, True), ["collision"])
+
+
 def test_foul_of_the_team_with_the_ball_stops_the_game() -> None:
     assert crowded_area("magenta3").state == FREE_KICK_CYAN
 
