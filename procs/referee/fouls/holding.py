@@ -28,6 +28,8 @@ class Holding:
         self._before, self._robots = ball, scene.sight.robots
         if robot and robot != self._robot:
             self._robot, self._held_s, self._pulled_m = robot, 0.0, 0.0
+        if not robot:
+            self._rolls(scene)
         if before is None or middle is None or was is None or scene.duration_s <= 0.0:
             return None
         moved_m = math.dist(before, ball)

@@ -61,6 +61,7 @@ CASES = {
         "fouls.test_holding_the_ball_still_for_a_second_is_a_foul",
         "fouls.test_pulling_the_ball_back_is_a_foul_after_30_cm",
         "fouls.test_holding_twice_with_a_short_pause_adds_up",
+        "fouls.test_holding_is_counted_anew_after_a_long_roll",
     ],
     "dribbling for 3 m": [
         "fouls.test_dribbling_further_than_three_metres_is_a_foul",

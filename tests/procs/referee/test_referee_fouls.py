@@ -151,6 +151,18 @@ def test_holding_twice_with_a_short_pause_adds_up() -> None:
     assert script.reasons == ["holding"]
 
 
+@pytest.mark.parametrize(("free_s", "reasons"), [(3.0, ["holding"]), (5.0, [])])
+def test_holding_is_counted_anew_after_a_long_roll(free_s: float, reasons: list[str]) -> None:
+    script = Script().playing()
+    for held_s in (0.8, 0.6):
+        script.robots["cyan3"] = Point(script.ball.x_m - 0.33, 0.0)
+        for _ in range(round(held_s / TICK_S)):
+            script.touch("cyan3")
+        for _ in range(round(free_s / TICK_S)):
+            script.roll(script.ball.x_m + 0.02, 0.0)
+    assert script.reasons == reasons
+
+
 def test_pulling_the_ball_back_is_a_foul_after_30_cm() -> None:
     script = Script().playing()
     start_m = script.ball.x_m
