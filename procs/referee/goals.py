@@ -26,7 +26,7 @@ def judge(place: Point, piece: State, touches: Touches, sight: Sight, ends: Ends
     conceding = ends.defender(place.x_m)
     team = team_number(touches.last)
     if team is conceding:
-        direct = piece is not State.DROP_BALL and touches.robots == {touches.taker} and len(sight.team(team)) > 1
+        direct = touches.robots == {touches.taker} and len(sight.team(team)) > 1
         if direct and piece is not State.PLAY:
             return Verdict(Team.NONE, corner_kick(conceding.other, place, field), Reason.OWN_GOAL)
         return Verdict(conceding.other, kick_off(conceding))

@@ -43,6 +43,7 @@ CASES = {
     "dropped ball: 1 m away, two robots before a goal": [
         "rules.test_positions_of_robots_at_a_set_piece",
         "fouls.test_dropped_ball_goal_needs_two_robots",
+        "goals.test_dropped_ball_own_goal_needs_two_robots",
     ],
     "penalty: reached within 10 s": [
         "match.test_penalty_that_is_not_taken_becomes_a_goal_kick",
