@@ -24,6 +24,8 @@ class Touches:
         """Place of the last touch; before the first, that of the ball."""
         self.again = False
         """The taker has touched the ball again after a free roll, before another robot did."""
+        self.double = False
+        """It had mates on the field when it did so."""
         self.owes_pass = Team.NONE
         """Team that won the ball in its own half and has not passed it since."""
 
@@ -32,7 +34,8 @@ class Touches:
         for robot, place in sight.touching.items():
             if robot != self.last:
                 self._won(robot, place, ends, pass_m)
-            self.again = self.again or (released and robot == self.taker and self.robots == {robot})
+            if released and robot == self.taker and self.robots == {robot} and not self.again:
+                self.again, self.double = True, bool(sight.mates(robot))
             self.taker = self.taker or robot
             self.robots.add(robot)
             self.last, self.place = robot, place

@@ -7,6 +7,6 @@ from procs.referee.reasons import Reason
 def double_touch(scene: Scene) -> Foul | None:
     """Returns the foul of a taker that played the ball twice; a robot without mates may."""
     touches = scene.touches
-    if not touches.again or not scene.sight.mates(touches.taker):
+    if not touches.double:
         return None
     return Foul(touches.taker, Reason.DOUBLE_TOUCH, touches.place)

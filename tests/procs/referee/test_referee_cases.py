@@ -39,11 +39,12 @@ CASES = {
     "set piece: the taker plays the ball once": [
         "fouls.test_taker_may_not_touch_twice",
         "fouls.test_taker_may_touch_after_another_robot",
+        "takers.test_mates_that_come_back_make_no_touch_a_double_one",
     ],
     "dropped ball: 1 m away, two robots before a goal": [
         "rules.test_positions_of_robots_at_a_set_piece",
         "fouls.test_dropped_ball_goal_needs_two_robots",
-        "goals.test_dropped_ball_own_goal_needs_two_robots",
+        "takers.test_dropped_ball_own_goal_needs_two_robots",
     ],
     "penalty: reached within 10 s": [
         "match.test_penalty_that_is_not_taken_becomes_a_goal_kick",
