@@ -329,10 +329,17 @@ class Whistle:
                 self._play(ball)
 
     def _watch_penalty(self, scene: Scene) -> None:
-        """Watches a penalty that is one shot: one of those that decide a match, or the last act of a half."""
+        """Watches a penalty that is one shot: one of those that decide a match, or the last act of a half.
+
+        A foul of the team that shoots makes it a miss.
+        """
         if self._repeat(scene):
             return
         scored = penalty_scored(scene, self._stretch, self.restart, self.time_in_state_s)
+        grave = collision(scene) or dribbling(scene)
+        if grave and team_number(grave.robot) is self.team:
+            self._count_foul(grave)
+            scored = False
         if scored is None:
             return
         if self.shootout:

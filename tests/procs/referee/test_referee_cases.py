@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from procs.model.events import Kind
+from procs.model.events import Event, Kind
 from procs.model.field import Point
 from procs.model.game_states import State
 from procs.referee import restarts
@@ -57,6 +57,7 @@ CASES = {
         "cases.test_rebound_of_a_deciding_penalty_is_a_miss",
         "cases.test_deciding_penalty_off_the_keeper_is_a_goal",
         "cases.test_keeper_at_the_ball_first_repeats_a_deciding_penalty",
+        "cases.test_foul_of_the_taker_makes_a_deciding_penalty_a_miss",
     ],
     "deciding penalty: within 30 s": ["cases.test_deciding_penalty_ends_after_thirty_seconds"],
     "holding for 1 s, over 0.30 m, again after less than 4 s": [
@@ -157,6 +158,19 @@ def test_deciding_penalty_off_the_keeper_is_a_goal() -> None:
     script.touch("magenta1")
     script.goal(11.2, "magenta1")
     assert script.score == (1, 0)
+
+
+def test_foul_of_the_taker_makes_a_deciding_penalty_a_miss() -> None:
+    script = penalties()
+    script.carry("cyan2", 11.0, 0.3)
+    assert (script.state, script.score) == ((State.PENALTY, MAGENTA, True), (0, 0))
+    script = penalties()
+    script.carry("cyan2", 9.0)
+    script.tick(Event(Kind.COLLISION, "magenta1", "cyan2", 9.5, 0.0, 3.5))
+    assert script.whistle.team is CYAN, "the foul of the keeper is not that of the taker"
+    script.tick(Event(Kind.COLLISION, "cyan2", "magenta1", 9.5, 0.0, 3.5))
+    script.goal(11.2, "cyan2")
+    assert (script.state, script.score) == ((State.PENALTY, MAGENTA, True), (0, 0))
 
 
 def test_keeper_at_the_ball_first_repeats_a_deciding_penalty() -> None:
