@@ -10,11 +10,21 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, NamedTuple, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+
+
+def _possible_name(host: str) -> str:
+    """Refuses a name that cannot be looked up; sockets fail at it in a way of their own."""
+    try:
+        host.encode("idna")
+    except UnicodeError as error:
+        raise ValueError(f"'{host[:_QUOTED]}' is not the name of a machine: {error}") from error
+    return host
+
 
 PORT = 28097
 """Port of the RefBox for base stations."""
-Host = Annotated[str, Field(min_length=1, pattern=r"^[^\s\x00-\x1f]*$")]
+Host = Annotated[str, Field(min_length=1, pattern=r"^[^\s\x00-\x1f]*$"), AfterValidator(_possible_name)]
 """A name or an address in the network."""
 LONGEST = 65_536
 """A peer that sends more bytes without a NUL does not speak the protocol."""

@@ -243,7 +243,7 @@ def test_server_listens_on_an_ipv6_address(leave_out: Callable[[str], None]) -> 
 
 
 @pytest.mark.parametrize("settings", [ClientConfig, ServerConfig])
-@pytest.mark.parametrize("host", ["", "127.0.0.1\0", "a b", "there\n"])
+@pytest.mark.parametrize("host", ["", "127.0.0.1\0", "a b", "there\n", "ö" * 70, "a..b"])
 def test_host_that_is_no_name_is_refused(settings: type[Config], host: str) -> None:
     with pytest.raises(ValidationError, match="host"):
         settings.model_validate({"host": host})
