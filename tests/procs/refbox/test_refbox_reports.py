@@ -14,6 +14,7 @@ from lcmtypes.soccer import ball_estimate_t, game_state_t, robot_estimate_t, tea
 from procs.refbox.client import RefBoxClient
 from procs.refbox.protocol import ProtocolError
 from procs.refbox.server import RefBoxServer
+from procs.refbox.station import Station
 from procs.refbox.world_state import best_belief, check, encode, intention_of, world_state
 from tests.procs.refbox.base_station import BaseStation, say
 
@@ -279,6 +280,22 @@ def test_endless_message_of_a_station_is_dropped() -> None:
     server.finalize()
     assert any("more than 65536 bytes without a NUL" in line.text for line in server.logged)
     assert any("left; 1 world states reported" in line.text for line in server.logged)
+
+
+def test_flood_of_a_station_is_read_in_parts() -> None:
+    server = Bench(RefBoxServer, "world/refbox", port=0)
+    connection, flooding = socket.socketpair()
+    with connection, flooding:
+        connection.setblocking(False)
+        station = Station(connection, "flooding", server.component.log)
+        flooding.sendall(b"1\0" * 1000 + json.dumps(EMPTY).encode() + b"\0")
+        assert station.hear()
+        assert 0 < station.refused <= 100
+        assert all(station.hear() for _ in range(15))
+        assert (station.refused, station.reports) == (1000, 1)
+        flooding.close()
+        assert not station.hear()
+    server.finalize()
 
 
 def test_match_of_the_launch_file_is_reported(refbox: socket.socket) -> None:
