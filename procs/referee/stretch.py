@@ -24,6 +24,7 @@ class Stretch:
         self.piece = piece
         """Set piece at the beginning; PLAY if no robot took it in its time."""
         self.excused = excused
+        """Robots that no breach of the set piece is held against; those that come back to the field are added."""
         self.keeper = keeper
         self.touches = Touches(ball)
         self.released = False

@@ -97,7 +97,9 @@ class Whistle:
         """Runs one tick of `duration_s`."""
         self.calls = []
         self.time_in_state_s += duration_s
+        away = self.cards.sent_off
         self.cards.pass_time(duration_s)
+        self._stretch.excused |= away - self.cards.sent_off
         sight = sight.without(self.cards.sent_off)
         if self.over:
             return

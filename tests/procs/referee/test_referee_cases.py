@@ -31,6 +31,7 @@ CASES = {
         "fouls.test_wrong_taker_has_the_set_piece_repeated",
         "fouls.test_robot_that_comes_near_has_the_set_piece_repeated",
         "fouls.test_set_piece_is_repeated_twice_at_most",
+        "set_pieces.test_robot_that_comes_back_breaches_no_set_piece",
     ],
     "set piece: a mate touches the ball before a goal counts": [
         "fouls.test_set_piece_goal_counts_only_after_a_second_robot",
@@ -39,12 +40,12 @@ CASES = {
     "set piece: the taker plays the ball once": [
         "fouls.test_taker_may_not_touch_twice",
         "fouls.test_taker_may_touch_after_another_robot",
-        "takers.test_mates_that_come_back_make_no_touch_a_double_one",
+        "set_pieces.test_mates_that_come_back_make_no_touch_a_double_one",
     ],
     "dropped ball: 1 m away, two robots before a goal": [
         "rules.test_positions_of_robots_at_a_set_piece",
         "fouls.test_dropped_ball_goal_needs_two_robots",
-        "takers.test_dropped_ball_own_goal_needs_two_robots",
+        "set_pieces.test_dropped_ball_own_goal_needs_two_robots",
     ],
     "penalty: reached within 10 s": [
         "match.test_penalty_that_is_not_taken_becomes_a_goal_kick",

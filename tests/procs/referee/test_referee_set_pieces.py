@@ -1,7 +1,8 @@
-"""Takers of set pieces: their own goals, and their touches when they are alone."""
+"""Set pieces: own goals of their takers, and robots that leave the field and come back."""
 
 import pytest
 
+from procs.model.events import Event, Kind
 from procs.model.field import Point
 from procs.model.game_states import State
 from procs.model.teams import Team
@@ -38,3 +39,20 @@ def test_mates_that_come_back_make_no_touch_a_double_one() -> None:
         script.roll(script.ball.x_m + 0.05, 0.0)
     assert not script.whistle.cards.sent_off
     assert (script.state[0], script.reasons) == (State.PLAY, [])
+
+
+def test_robot_that_comes_back_breaches_no_set_piece() -> None:
+    """It has waited beside the field, where the ball went out."""
+    script = Script(repair_s=3.0).playing()
+    script.ball = Point(3.0, 7.2)
+    script.whistle.take_out("magenta3", Reason.REPAIR)
+    script.robots |= {"magenta3": Point(3.0, 7.5), "cyan2": Point(3.0, 6.3)}
+    script.tick(Event(Kind.OUT_SIDE, "magenta2", "", *script.ball, 3.0))
+    script.started()
+    assert script.whistle.cards.sent_off == {"magenta3"}
+    script.wait(3.0)
+    assert not script.whistle.cards.sent_off
+    assert (script.state, script.reasons) == ((State.THROW_IN, CYAN, False), [])
+    script.robots["magenta2"] = Point(3.5, 6.0)
+    script.tick()
+    assert script.reasons == ["too near to a set piece"]
