@@ -55,7 +55,9 @@ def too_near(
     return found
 
 
-def in_wrong_half(restart: Restart, robots: Mapping[str, Point], ends: Ends = _ENDS) -> list[str]:
+def in_wrong_half(
+    restart: Restart, robots: Mapping[str, Point], ends: Ends = _ENDS, tolerance_m: float = TOLERANCE_M
+) -> list[str]:
     """Returns the robots that are in the other team's half at a kick-off; none at other set pieces."""
     if restart.state is not State.KICK_OFF:
         return []
@@ -63,7 +65,7 @@ def in_wrong_half(restart: Restart, robots: Mapping[str, Point], ends: Ends = _E
     return [
         name
         for name, middle in robots.items()
-        if name != taker and middle.x_m * ends.side_of(team_number(name)) < -TOLERANCE_M
+        if name != taker and middle.x_m * ends.side_of(team_number(name)) < -tolerance_m
     ]
 
 

@@ -16,6 +16,7 @@ class Reason(StrEnum):
     TOO_LONG_IN_AREA = "too long in an area"
     EARLY_TOUCH = "touch before the set piece was taken"
     TOO_NEAR = "too near to a set piece"
+    WRONG_HALF = "in the other half before the kick-off"
     KEEPER_LEFT = "keeper left its area before the penalty"
     DEADLOCK = "deadlock"
     NOT_TAKEN = "penalty not taken in time"

@@ -1,14 +1,14 @@
-"""Set pieces: only the team that takes it plays the ball, and robots keep their distance until it has moved (2016)."""
+"""Set pieces: only the team that takes it plays the ball; robots keep distance and halves until it moves (2016)."""
 
 from procs.model.game_states import State
 from procs.model.teams import Team, team_number
 from procs.referee.fouls.foul import Foul, Scene
-from procs.referee.positions import too_near
+from procs.referee.positions import in_wrong_half, too_near
 from procs.referee.reasons import Reason
 from procs.referee.restarts import Restart
 
 _INTRUSION_M = 0.3
-"""A robot that has kept its distance may come nearer by so much before the set piece is repeated."""
+"""A robot may come nearer, or into the other half, by so much before the set piece is repeated."""
 
 
 def breach(scene: Scene, restart: Restart, excused: frozenset[str], keeper: str) -> Foul | None:
@@ -28,6 +28,9 @@ def breach(scene: Scene, restart: Restart, excused: frozenset[str], keeper: str)
     intruders = sorted(set(near) - excused)
     if intruders:
         return Foul(intruders[0], Reason.TOO_NEAR, restart.spot)
+    crossed = sorted(set(in_wrong_half(restart, scene.sight.robots, scene.ends, _INTRUSION_M)) - excused)
+    if crossed:
+        return Foul(crossed[0], Reason.WRONG_HALF, restart.spot)
     return _keeper_left_goal(scene, restart, keeper) if keeper not in excused else None
 
 

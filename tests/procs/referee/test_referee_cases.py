@@ -20,7 +20,10 @@ from tests.procs.referee.script import CYAN, MAGENTA, Script
 CASES = {
     "ball over the touch line, over the goal line, without a touch": ["rules.test_calls"],
     "goal, also an own goal": ["rules.test_goals", "fouls.test_own_goal_straight_from_a_set_piece_is_a_corner"],
-    "kick-off: all in their own half": ["rules.test_positions_of_robots_at_a_set_piece"],
+    "kick-off: all in their own half": [
+        "rules.test_positions_of_robots_at_a_set_piece",
+        "set_pieces.test_halves_are_kept_until_the_kick_off_is_taken",
+    ],
     "set piece: own team 2 m away, opponents 3 m": ["rules.test_positions_of_robots_at_a_set_piece"],
     "set piece: one defender may be in its penalty area": [
         "fouls.test_one_defender_may_stand_in_its_area_at_a_set_piece"

@@ -56,3 +56,21 @@ def test_robot_that_comes_back_breaches_no_set_piece() -> None:
     script.robots["magenta2"] = Point(3.5, 6.0)
     script.tick()
     assert script.reasons == ["too near to a set piece"]
+
+
+@pytest.mark.parametrize(("robot", "x_m"), [("cyan3", 1.0), ("magenta3", -1.0)])
+def test_halves_are_kept_until_the_kick_off_is_taken(robot: str, x_m: float) -> None:
+    script = Script().started()
+    script.robots[robot] = Point(0.2 * x_m, 5.0)
+    script.tick()
+    assert not script.whistle.stopped, "a little further is no breach"
+    script.robots[robot] = Point(0.4 * x_m, 5.0)
+    script.tick()
+    assert script.state == (State.KICK_OFF, CYAN, True)
+    assert script.reasons == ["in the other half before the kick-off"]
+    script.robots[robot] = Point(-1.0 * x_m, 5.0)
+    script.started()
+    script.touch("cyan2")
+    script.robots[robot] = Point(0.4 * x_m, 5.0)
+    script.tick()
+    assert len(script.reasons) == 1, "the ball has been played"
