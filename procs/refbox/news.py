@@ -36,7 +36,7 @@ def news(
     is off the field for no decision in it is under repair.
     """
     if before is None:
-        commands = _half(now) + _robots(game_state_t(), now, events, players)
+        commands = _half(now) + _robots(game_state_t(), now, _in_force(events[: now.decisions], now), players)
         return commands + _break(now) + _stopped(now) + ([] if now.stopped else [Command("START")])
     if _is_new_match(before, now, events):
         return [Command("RESET"), *news(None, now, events, players)]
@@ -78,6 +78,16 @@ def _robots(
         if cause is None and robot not in before.sent_off
     ]
     return _scores(before, now) + _cards(newer, players) + off + repairs
+
+
+def _in_force(events: Sequence[game_event_t], now: game_state_t) -> list[game_event_t]:
+    """Leaves out a double yellow card whose robot is back, and its earlier ones: it would be sent off once more."""
+    served = {
+        event.robot: place
+        for place, event in enumerate(events)
+        if event.card == game_event_t.DOUBLE_YELLOW and event.robot not in now.sent_off
+    }
+    return [event for place, event in enumerate(events) if not event.card or place > served.get(event.robot, -1)]
 
 
 def _cause(robot: str, events: Sequence[game_event_t]) -> game_event_t | None:

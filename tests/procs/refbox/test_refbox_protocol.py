@@ -178,3 +178,14 @@ def test_robot_off_the_field_without_a_card_is_repaired() -> None:
     assert news(PLAY, now, [red]) == off
     assert news(now, now, [red]) == []
     assert news(None, now, [red]) == [Command("FIRST_HALF"), *off, Command("START")]
+
+
+def test_newcomer_does_not_send_off_a_robot_that_is_back() -> None:
+    cards = (game_event_t.YELLOW, game_event_t.DOUBLE_YELLOW, game_event_t.YELLOW)
+    events = [left("cyan2", "", card) for card in cards] + [left("cyan3", "", game_event_t.DOUBLE_YELLOW)]
+    for event in events:
+        event.team = game_state_t.TEAM_CYAN
+    now = state(game_state_t.PLAY, stopped=False, decisions=len(events))
+    now.sent_off = ["cyan3"]
+    told = [Command("YELLOW_CARD", "cyan", 2), Command("DOUBLE_YELLOW", "cyan", 3)]
+    assert news(None, now, events) == [Command("FIRST_HALF"), *told, Command("START")]
