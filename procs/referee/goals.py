@@ -43,7 +43,8 @@ def _why_not(piece: State, touches: Touches, sight: Sight, ends: Ends) -> Reason
         return Reason.OWN_HALF
     if len(sight.team(team)) < 2:
         return None  # a robot that is alone has no mate to pass to
-    if piece not in (State.PLAY, State.PENALTY) and len(touches.robots) < 2:
+    set_piece = piece not in (State.PLAY, State.PENALTY) or team is touches.late
+    if set_piece and len(touches.robots) < 2:
         return Reason.NO_SECOND_ROBOT
     if touches.owes_pass is team:
         return Reason.NO_PASS

@@ -4,7 +4,7 @@ import math
 
 from procs.model.field import Point
 from procs.model.game_states import State
-from procs.model.teams import Ends
+from procs.model.teams import Ends, Team
 from procs.referee.advantage import Advantage
 from procs.referee.fouls.book import RuleBook
 from procs.referee.fouls.foul import Foul, Scene
@@ -22,7 +22,7 @@ class Stretch:
         `keeper` is the goalkeeper that faces the set piece; empty without one.
         """
         self.piece = piece
-        """Set piece at the beginning; PLAY if no robot took it in its time."""
+        """Set piece at the beginning; PLAY if its team did not take it in its time."""
         self.excused = excused
         """Robots that no breach of the set piece is held against; those that come back to the field are added."""
         self.keeper = keeper
@@ -57,10 +57,10 @@ class Stretch:
         self.released = self.released or (taken and rolled)
         return rolled
 
-    def begin_play(self, ball: Point) -> None:
-        """Goes on as play, with or without the set piece having been taken."""
-        if not self.touches.robots:
-            self.piece = State.PLAY
+    def begin_play(self, ball: Point, team: Team) -> None:
+        """Goes on as play, with or without the set piece of a team having been taken."""
+        if not self.touches.robots and self.piece is not State.DROP_BALL:
+            self.piece, self.touches.late = State.PLAY, team
         self._resting_at, self._resting_s = ball, 0.0
 
     def fouls(self, scene: Scene) -> tuple[Foul | None, Foul | None]:

@@ -26,6 +26,8 @@ class Touches:
         """The taker has touched the ball again after a free roll, before another robot did."""
         self.double = False
         """It had mates on the field when it did so."""
+        self.late = Team.NONE
+        """Team that did not take its set piece in time: it plays on, but a goal still needs a second robot."""
         self.owes_pass = Team.NONE
         """Team that won the ball in its own half and has not passed it since."""
 

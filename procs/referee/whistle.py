@@ -384,7 +384,7 @@ class Whistle:
         return restarts.penalty(self.shootout.shooter, self.rules.field, self.ends)
 
     def _play(self, ball: Point) -> None:
-        self._stretch.begin_play(ball)
+        self._stretch.begin_play(ball, self.team)
         self._enter(State.PLAY, Team.NONE, stopped=False)
 
     def _enter(self, state: State, team: Team, stopped: bool) -> None:

@@ -39,6 +39,7 @@ CASES = {
     "set piece: a mate touches the ball before a goal counts": [
         "fouls.test_set_piece_goal_counts_only_after_a_second_robot",
         "fouls.test_set_piece_goal_counts_after_a_mate_played",
+        "set_pieces.test_late_set_piece_needs_a_second_robot_of_its_team",
     ],
     "set piece: the taker plays the ball once": [
         "fouls.test_taker_may_not_touch_twice",
@@ -49,6 +50,7 @@ CASES = {
         "rules.test_positions_of_robots_at_a_set_piece",
         "fouls.test_dropped_ball_goal_needs_two_robots",
         "set_pieces.test_dropped_ball_own_goal_needs_two_robots",
+        "set_pieces.test_dropped_ball_needs_two_robots_however_late",
     ],
     "penalty: reached within 10 s": [
         "match.test_penalty_that_is_not_taken_becomes_a_goal_kick",

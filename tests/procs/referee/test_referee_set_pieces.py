@@ -74,3 +74,31 @@ def test_halves_are_kept_until_the_kick_off_is_taken(robot: str, x_m: float) -> 
     script.robots[robot] = Point(0.4 * x_m, 5.0)
     script.tick()
     assert len(script.reasons) == 1, "the ball has been played"
+
+
+@pytest.mark.parametrize(
+    ("touching", "score"), [(["cyan2"], (0, 0)), (["cyan3", "cyan2"], (1, 0)), (["magenta2"], (0, 1))]
+)
+def test_late_set_piece_needs_a_second_robot_of_its_team(touching: list[str], score: tuple[int, int]) -> None:
+    script = Script().started()
+    script.wait(7.1)
+    assert script.state == (State.PLAY, Team.NONE, False)
+    side = 1.0 if "cyan2" in touching else -1.0
+    for robot in touching:
+        script.roll(script.ball.x_m + side, 0.0)
+        script.touch(robot)
+    script.goal(side * 11.2, touching[-1])
+    assert script.score == score
+    assert script.reasons == ([] if any(score) else ["no second robot touched the ball"])
+
+
+def test_dropped_ball_needs_two_robots_however_late() -> None:
+    script = Script(deadlock_s=1.0).playing()
+    script.wait(1.1)
+    script.started()
+    script.wait(7.1)
+    assert script.state == (State.PLAY, Team.NONE, False)
+    script.roll(1.0, 0.0)
+    script.touch("cyan2")
+    script.goal(11.2, "cyan2")
+    assert script.reasons == ["deadlock", "no second robot touched the ball"]
