@@ -57,7 +57,7 @@ class Rules(BaseModel):
     moved_m: PositiveFloat = 0.5
     """A set piece has been taken when the ball has rolled so far without a touch (2016: 0.5 m)."""
     penalty_s: PositiveFloat = 10.0
-    """Within this time the taker of a penalty must reach the ball (2016: 10 s)."""
+    """Within this time the taker of a penalty that decides no match must reach the ball (2016: 10 s)."""
     pass_m: PositiveFloat = 1.0
     """A team that won the ball in its own half must pass it so far before a goal counts (2016: 1 m)."""
     deadlock_s: PositiveFloat = 10.0

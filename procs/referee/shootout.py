@@ -39,17 +39,17 @@ class Shootout:
         self.goals[team] = max(0, self.goals[team] - 1)
 
 
-def penalty_scored(scene: Scene, stretch: Stretch, penalty: Restart, time_s: float) -> bool | None:
+def penalty_scored(scene: Scene, stretch: Stretch, penalty: Restart, time_s: float, reach_s: float) -> bool | None:
     """Returns whether a penalty is scored or missed, `time_s` after its start; None while it goes on.
 
-    A goal, the ball out, a further touch or time ends it. It is one shot: after it no robot of the shooting team may
-    touch the ball, even if the goalkeeper has.
+    A goal, the ball out, a further touch or time ends it, also if no robot has reached the ball within `reach_s`. It is
+    one shot: after it no robot of the shooting team may touch the ball, even if the goalkeeper has.
     """
     left = [event for event in scene.sight.events if event.kind in LEAVES]
     attacked = scene.ends.side_of(penalty.team.other)
     again = stretch.released and any(team_number(robot) is penalty.team for robot in scene.sight.touching)
     scored = not again and any(event.kind is Kind.GOAL and event.x_m * attacked > 0 for event in left)
     stretch.rolled(scene.sight.ball, scene.rules)
-    late = not scene.touches.robots and time_s >= scene.rules.penalty_s
+    late = not scene.touches.robots and time_s >= reach_s
     missed = bool(left) or late or again or time_s >= scene.rules.shot_s
     return scored if scored or missed else None

@@ -337,7 +337,8 @@ class Whistle:
         """
         if self._repeat(scene):
             return
-        scored = penalty_scored(scene, self._stretch, self.restart, self.time_in_state_s)
+        reach_s = self.rules.shot_s if self.shootout else self.rules.penalty_s
+        scored = penalty_scored(scene, self._stretch, self.restart, self.time_in_state_s, reach_s)
         grave = collision(scene) or dribbling(scene)
         if grave and team_number(grave.robot) is self.team:
             self._count_foul(grave)

@@ -65,7 +65,10 @@ CASES = {
         "cases.test_keeper_at_the_ball_first_repeats_a_deciding_penalty",
         "cases.test_foul_of_the_taker_makes_a_deciding_penalty_a_miss",
     ],
-    "deciding penalty: within 30 s": ["cases.test_deciding_penalty_ends_after_thirty_seconds"],
+    "deciding penalty: within 30 s": [
+        "cases.test_deciding_penalty_ends_after_thirty_seconds",
+        "cases.test_taker_of_a_deciding_penalty_may_take_its_time",
+    ],
     "holding for 1 s, over 0.30 m, again after less than 4 s": [
         "fouls.test_holding_the_ball_still_for_a_second_is_a_foul",
         "fouls.test_pulling_the_ball_back_is_a_foul_after_30_cm",
@@ -195,6 +198,14 @@ def test_deciding_penalty_ends_after_thirty_seconds() -> None:
     assert script.whistle.team is CYAN
     script.wait(0.3)
     assert (script.whistle.team, script.score) == (MAGENTA, (0, 0))
+
+
+def test_taker_of_a_deciding_penalty_may_take_its_time() -> None:
+    script = penalties()
+    script.wait(20.0)
+    script.touch("cyan2", Kind.KICK)
+    script.goal(11.2, "cyan2")
+    assert script.score == (1, 0)
 
 
 def test_match_waits_for_two_robots_of_each_team() -> None:

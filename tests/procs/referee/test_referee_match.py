@@ -191,7 +191,7 @@ def test_draw_is_decided_by_overtime_and_penalties_if_wanted() -> None:
     script.robots |= {"cyan2": Point(-3.0, 2.0), "cyan3": Point(-3.0, -2.0), "magenta2": Point(-6.9, 0.0)}
     script.robots |= {"magenta3": Point(-2.0, 3.0)}
     script.started()
-    script.wait(10.1)
+    script.wait(30.1)
     assert (script.state[0], script.score) == (State.FROZEN, (1, 0))
 
 
