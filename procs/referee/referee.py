@@ -91,6 +91,7 @@ class Referee(Component):
             events,
             {name: Point(robot.x_m, robot.y_m) for name, robot in robots.items()},
             {name: Point(robot.vx_m_s, robot.vy_m_s) for name, robot in robots.items()},
+            name_of(ball.last_touch),
         )
 
     def _concerns(self, event: match_event_t) -> bool:

@@ -24,6 +24,8 @@ class Sight(NamedTuple):
     """Middle of each robot on the field."""
     velocities_m_s: Mapping[str, Point] = _NOTHING
     """Velocity of each robot; a robot that is missing stands still."""
+    last_touch: str = ""
+    """Robot that touched the ball last, in this tick or before."""
 
     def without(self, robots: frozenset[str]) -> "Sight":
         """Returns the sight without robots that take no part in the game."""
@@ -31,8 +33,8 @@ class Sight(NamedTuple):
 
     @property
     def touching(self) -> dict[str, Point]:
-        """Robots that touched, held or kicked the ball in this tick, and where the ball was, by name."""
-        events = sorted(self.events)
+        """Robots that touched, held or kicked the ball in this tick, and where it was, by name; the last one last."""
+        events = sorted(self.events, key=lambda event: (event.robot == self.last_touch, event))
         return {each.robot: Point(each.x_m, each.y_m) for each in events if each.kind in (Kind.TOUCH, Kind.KICK)}
 
     def team(self, team: Team) -> list[str]:

@@ -19,7 +19,7 @@ class Touches:
         self.taker = ""
         """Robot that touched the ball first."""
         self.last = ""
-        """Robot that touched the ball last; of several in a tick the taker of the ball."""
+        """Robot that touched the ball last; of several in a tick the one that the sight names."""
         self.place = spot
         """Place of the last touch; before the first, that of the ball."""
         self.again = False

@@ -1,5 +1,6 @@
 """Messages of the referee on the bench."""
 
+import math
 from typing import Any
 
 import pytest
@@ -247,6 +248,22 @@ def test_teams_and_numbers_are_those_of_the_players() -> None:
     now = state(bench)
     assert (now.score_cyan, now.score_magenta, now.sent_off) == (1, 0, ["cyan2"])
     assert (history(bench)[-1].robot, history(bench)[-1].team) == ("cyan2", game_state_t.TEAM_MAGENTA)
+
+
+@pytest.mark.parametrize(
+    ("x_m", "last", "score"),
+    [(-3.0, "bert", (0, 0)), (-3.0, "dora", (1, 0)), (3.0, "dora", (0, 0)), (3.0, "bert", (0, 1))],
+)
+def test_last_of_two_that_touch_the_ball_in_a_tick(x_m: float, last: str, score: tuple[int, int]) -> None:
+    """A shot from the own half counts only if the rival turns it in."""
+    bench = with_names()
+    both = [make(match_event_t.TOUCH, robot, x_m) for robot in ("bert", "dora")]
+    bench.port("match_events").put(ball_x_m=x_m, last_touch=last, events=both)
+    bench.iterate()
+    goal = make(match_event_t.GOAL, last, math.copysign(11.2, -x_m))
+    bench.port("match_events").put(ball_x_m=goal.x_m, last_touch=last, events=[goal])
+    bench.iterate()
+    assert (state(bench).score_cyan, state(bench).score_magenta) == score
 
 
 def test_player_on_the_field_has_the_number() -> None:
