@@ -91,11 +91,10 @@ def _in_force(events: Sequence[game_event_t], now: game_state_t) -> list[game_ev
 
 
 def _cause(robot: str, events: Sequence[game_event_t]) -> game_event_t | None:
-    """Returns the newest decision that took a robot off the field."""
-    for event in reversed(events):
-        if event.reason == Reason.PARK or (event.robot == robot and (event.card in _AWAY or event.reason in OFF_FIELD)):
-            return event
-    return None
+    """Returns the newest decision that took a robot off the field: a card, which lasts longer, or else another one."""
+    cards = [event for event in events if event.robot == robot and event.card in _AWAY]
+    others = [event for event in events if event.reason in OFF_FIELD and event.robot in (robot, "")]
+    return next(reversed(cards or others), None)
 
 
 def _is_new_match(before: game_state_t, now: game_state_t, events: Sequence[game_event_t]) -> bool:

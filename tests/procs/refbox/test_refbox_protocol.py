@@ -189,3 +189,18 @@ def test_newcomer_does_not_send_off_a_robot_that_is_back() -> None:
     now.sent_off = ["cyan3"]
     told = [Command("YELLOW_CARD", "cyan", 2), Command("DOUBLE_YELLOW", "cyan", 3)]
     assert news(None, now, events) == [Command("FIRST_HALF"), *told, Command("START")]
+
+
+def test_robot_with_a_card_parks_no_others() -> None:
+    red = left("cyan3", "", game_event_t.RED)
+    red.team = game_state_t.TEAM_CYAN
+    events = [red, left("", Reason.PARK)]
+    now = state(game_state_t.PLAY, stopped=False, decisions=2)
+    for away, told in ((["cyan3"], []), (["cyan3", "magenta2"], [Command("PARK")])):
+        now.sent_off = away
+        assert news(None, now, events) == [
+            Command("FIRST_HALF"),
+            Command("RED_CARD", "cyan", 3),
+            *told,
+            Command("START"),
+        ]
