@@ -43,9 +43,22 @@ def _why_not(piece: State, touches: Touches, sight: Sight, ends: Ends) -> Reason
         return Reason.OWN_HALF
     if len(sight.team(team)) < 2:
         return None  # a robot that is alone has no mate to pass to
-    set_piece = piece not in (State.PLAY, State.PENALTY) or team is touches.late
-    if set_piece and len(touches.robots) < 2:
+    if _lacks_second_robot(team, piece, touches):
         return Reason.NO_SECOND_ROBOT
     if touches.owes_pass is team:
         return Reason.NO_PASS
     return None
+
+
+def _lacks_second_robot(team: Team, piece: State, touches: Touches) -> bool:
+    """Returns whether a set piece went into the goal without a second robot.
+
+    After a dropped ball any will do; after others it is a mate of the taker, unless rivals have had the ball: one from
+    which it bounced does not count.
+    """
+    if piece is State.DROP_BALL:
+        return len(touches.robots) < 2
+    of_set_piece = piece not in (State.PLAY, State.PENALTY) or team is touches.late
+    if not of_set_piece or touches.intercepted or team is not team_number(touches.taker):
+        return False
+    return all(robot == touches.taker or team_number(robot) is not team for robot in touches.robots)

@@ -45,6 +45,7 @@ class Stretch:
         """Takes a tick of `duration_s`, and returns it as the rules see it."""
         self.touches.watch(sight, ends, self.released, rules.pass_m)
         self._carrier.watch(duration_s, sight)
+        self.touches.watch_rivals(duration_s, sight, self._carrier.robot)
         return Scene(duration_s, sight, rules, ends, self.touches, self._carrier)
 
     def rolled(self, ball: Point, rules: Rules) -> bool:

@@ -2,11 +2,13 @@
 
 import math
 
+from procs.model.events import Kind
 from procs.model.field import Point
 from procs.model.teams import Ends, Team, team_number
 from procs.referee.sight import Sight
 
 _LOST_S = 0.25  # a robot that does not touch the ball for longer does not carry it any more
+_HAS_S = 0.5  # a robot that carries the ball for so long has won it, and did not only turn it
 _FREE_M = 0.5  # nor does a robot from which the ball has rolled so far
 
 
@@ -28,6 +30,9 @@ class Touches:
         """It had mates on the field when it did so."""
         self.late = Team.NONE
         """Team that did not take its set piece in time: it plays on, but a goal still needs a second robot."""
+        self.intercepted = False
+        """A rival of the taker has carried or kicked the ball."""
+        self._rival_s = 0.0  # for which a rival carries it
         self.owes_pass = Team.NONE
         """Team that won the ball in its own half and has not passed it since."""
 
@@ -41,6 +46,15 @@ class Touches:
             self.taker = self.taker or robot
             self.robots.add(robot)
             self.last, self.place = robot, place
+
+    def watch_rivals(self, duration_s: float, sight: Sight, carrier: str) -> None:
+        """Notes whether rivals of the taker have had the ball; `carrier` is the robot that carries it now."""
+        kickers = {event.robot for event in sight.events if event.kind is Kind.KICK}
+        self._rival_s = self._rival_s + duration_s if self._is_rival(carrier) else 0.0
+        self.intercepted = self.intercepted or self._rival_s > _HAS_S or any(map(self._is_rival, kickers))
+
+    def _is_rival(self, robot: str) -> bool:
+        return bool(robot and self.taker) and team_number(robot) is not team_number(self.taker)
 
     def _won(self, robot: str, place: Point, ends: Ends, pass_m: float) -> None:
         team, before = team_number(robot), team_number(self.last)

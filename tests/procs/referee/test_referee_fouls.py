@@ -22,6 +22,24 @@ def test_set_piece_goal_counts_only_after_a_second_robot() -> None:
     assert script.reasons == ["no second robot touched the ball"]
 
 
+@pytest.mark.parametrize(
+    ("rival", "score"), [("bounce", (0, 0)), ("short carry", (0, 0)), ("kick", (1, 0)), ("carry", (1, 0))]
+)
+def test_second_robot_is_a_mate_unless_rivals_have_the_ball(rival: str, score: tuple[int, int]) -> None:
+    script = Script().started()
+    script.touch("cyan2")
+    script.roll(3.0, 0.0)
+    if "carry" in rival:
+        script.carry("magenta2", 1.6 if rival == "carry" else 2.5)
+    else:
+        script.touch("magenta2", Kind.KICK if rival == "kick" else Kind.TOUCH)
+    script.roll(script.ball.x_m - 0.6, 0.0)
+    script.touch("cyan2")
+    script.goal(11.2, "cyan2")
+    assert script.score == score
+    assert script.reasons == ([] if any(score) else ["no second robot touched the ball"])
+
+
 def test_taker_that_has_left_has_taken_the_set_piece() -> None:
     script = Script().started()
     script.touch("cyan2")
