@@ -1,5 +1,6 @@
 """Executors of a campaign's runs: processes of this machine, or the workers of a Dask cluster."""
 
+import asyncio
 import logging
 import multiprocessing
 import os
@@ -100,6 +101,12 @@ def _begin(parent: int) -> None:
     die_with_parent(parent)
 
 
+async def _greet(cluster: str) -> None:
+    """Connects with a scheduler and leaves again; Dask's client would wait without end for the greeting of another."""
+    comm = await asyncio.wait_for(import_module("distributed.comm").connect(cluster, timeout=CONNECT_S), 2 * CONNECT_S)
+    comm.abort()
+
+
 @contextmanager
 def executor_of(jobs: int, cluster: str = "", limit_s: float | None = None) -> Iterator[Executor]:
     """Yields `jobs` processes of this machine, or the workers of the Dask cluster whose scheduler has an address.
@@ -124,7 +131,10 @@ def executor_of(jobs: int, cluster: str = "", limit_s: float | None = None) -> I
         raise CampaignError(f"a cluster needs Dask, which is not installed; type: {INSTALL}") from error
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # failures of runs tell what it would tell at length
     try:
+        asyncio.run(_greet(cluster))
         client = dask.Client(cluster, timeout=CONNECT_S)
+    except (TimeoutError, MemoryError) as error:  # MemoryError: HTTP, read as the number of bytes to come
+        raise CampaignError(f"no Dask scheduler at {cluster}: another program answers, such as a dashboard") from error
     except (OSError, ValueError, TypeError) as error:  # TypeError: tls:// without certificates
         raise CampaignError(f"no Dask scheduler at {cluster}: {error}") from error
     with client:

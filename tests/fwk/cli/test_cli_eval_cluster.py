@@ -3,9 +3,11 @@
 import json
 import os
 import re
+import socket
 import sys
 from importlib import import_module
 from pathlib import Path
+from threading import Thread
 from typing import Any
 from unittest.mock import patch
 
@@ -91,6 +93,27 @@ def test_address_without_a_scheduler_is_named(launch: Path, monkeypatch: pytest.
     monkeypatch.setattr(executors, "CONNECT_S", 0.1)
     code, _, said = evaluated(str(launch), "--seeds", "1", "--cluster", "tcp://127.0.0.1:9")
     assert (code, "no Dask scheduler at tcp://127.0.0.1:9" in said) == (1, True)
+
+
+def greet(server: socket.socket, greeting: bytes) -> None:
+    """Greets a caller, and hears it until it leaves."""
+    caller, _ = server.accept()
+    with caller:
+        caller.sendall(greeting)
+        while caller.recv(65_536):
+            pass
+
+
+@pytest.mark.parametrize("greeting", [b"", b"HTTP/1.1 400 Bad Request"])
+def test_other_program_at_the_address_is_named(launch: Path, monkeypatch: pytest.MonkeyPatch, greeting: bytes) -> None:
+    monkeypatch.setattr(executors, "CONNECT_S", 0.5)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        other = Thread(target=greet, args=(server, greeting), daemon=True)
+        other.start()
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        code, _, said = evaluated(str(launch), "--seeds", "1", "--cluster", address)
+        other.join(10)
+    assert (code, f"no Dask scheduler at {address}: another program answers" in said) == (1, True)
 
 
 def test_missing_dask_is_named_with_the_line_to_type(monkeypatch: pytest.MonkeyPatch) -> None:
