@@ -19,6 +19,7 @@ class Connection:
         self._log = log
         self._socket: socket.socket | None = None
         self._dialling: socket.socket | None = None
+        self._address = ("", 0)
         self._dialled_us = 0
         self._stream = Stream()
         self._again_us = 0
@@ -32,7 +33,7 @@ class Connection:
         return self._socket is not None and not self._unsent
 
     def attend(self, host: str, port: int, retry_s: float, connect_s: float) -> None:
-        """Dials if there is no connection, or sends what is left of a message.
+        """Dials if there is no connection, or sends what is left of a message; leaves a RefBox at another address.
 
         Args:
             host: name or address of the RefBox.
@@ -41,6 +42,10 @@ class Connection:
             connect_s: time after which a RefBox that does not answer is not there.
         """
         self._retry_s = retry_s
+        if (host, port) != self._address:
+            self.close()
+            self._socket = self._dialling = None
+            self._address, self._again_us, self._reason = (host, port), 0, ""
         if self._socket is not None:
             self._send_rest()
         elif self._clock.now_us >= self._again_us:

@@ -181,6 +181,20 @@ def test_client_tries_again_and_says_once_why() -> None:
     assert said == [refused, *found] * 2
 
 
+def test_client_goes_to_a_new_address_at_once(refbox: socket.socket) -> None:
+    bench = Bench(RefBoxClient, "world/refbox", port=refbox.getsockname()[1])
+    bench.iterate(2)
+    former, _ = refbox.accept()
+    with former, socket.create_server(("127.0.0.1", 0)) as new:
+        new.settimeout(5.0)
+        former.settimeout(5.0)
+        bench.component.config = ClientConfig(port=new.getsockname()[1])
+        bench.iterate(2)
+        new.accept()[0].close()
+        assert former.recv(1) == b""
+    bench.finalize()
+
+
 def test_refbox_that_does_not_answer_holds_nothing_up(refbox: socket.socket) -> None:
     refbox.listen(0)
     with contextlib.ExitStack() as waiting:  # a full queue: the next connection is not answered
