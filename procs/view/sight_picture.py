@@ -12,7 +12,7 @@ from typing import TypeVar
 import cv2
 import numpy as np
 
-from fwk.testing import MemorySystem, PlanError, settings_in, system_of
+from fwk.testing import MemorySystem, PlanError, launch_plan, settings_in, system_of
 from lcmtypes.core import picture_t
 from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t
 from procs.model.algebra import Floats
@@ -115,7 +115,9 @@ def main() -> None:
         try:
             settings = settings_in(str(file), f"{asked.robot}/camera")
         except KeyError as error:
-            raise SystemExit(f"{asked.launch}: no camera of {asked.robot}") from error
+            names = (each.name for each in launch_plan(str(file)).components)
+            there = ", ".join(name.removesuffix("/camera") for name in names if name.endswith("/camera")) or "none"
+            raise SystemExit(f"{asked.launch}: no camera of {asked.robot}; robots with one: {there}") from error
         except PlanError as error:
             raise SystemExit(str(error)) from error
         system = system_of(str(file), seed=asked.seed)
@@ -124,7 +126,7 @@ def main() -> None:
         mirror = MirrorConfig(**settings["mirror"]).mirror()
         picture = sight_in(system, asked.robot, mirror, settings["ball"]["radius_m"])
     if picture is None:
-        raise SystemExit(f"no picture of {asked.robot}/image")
+        raise SystemExit(f"no picture of {asked.robot}/image until {asked.time:g} s; a later --time would show one")
     if not cv2.imwrite(str(asked.file), picture):
         raise SystemExit(f"'{asked.file}' cannot be written; does its folder exist?")
 

@@ -70,11 +70,19 @@ def test_command_draws_the_camera_of_a_match(tmp_path: Path, monkeypatch: pytest
         (["sight.xyz"], "'sight.xyz' ends in '.xyz'; it should end in .png or .jpg"),
         (["nowhere/sight.png", "--launch", "soccer-1v1.yaml", "--robot", "cyan1"], "'nowhere/sight.png' cannot be"),
         (["sight.png", "--launch", "soccer-1vs1.yaml"], "there is no 'soccer-1vs1.yaml' to include"),
-        (["sight.png", "--robot", "cyan9"], "soccer.yaml: no camera of cyan9"),
+        (
+            ["sight.png", "--robot", "cyan9"],
+            "soccer.yaml: no camera of cyan9; robots with one: cyan1, cyan2, cyan3, cyan4",
+        ),
+        (["sight.png", "--launch", "soccer-truth.yaml"], "no camera of cyan3; robots with one: none"),
+        (
+            ["sight.png", "--launch", "soccer-1v1.yaml", "--robot", "cyan1", "--time", "0"],
+            "no picture of cyan1/image until 0 s; a later --time",
+        ),
     ],
 )
 def test_command_says_what_is_wrong(words: list[str], mistake: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sys.argv", ["sight_picture", *words, "--time", "0.2"])
+    monkeypatch.setattr("sys.argv", ["sight_picture", "--time", "0.2", *words])
     with pytest.raises(SystemExit) as raised:
         sight_picture.main()
     assert mistake in str(raised.value)
