@@ -5,7 +5,7 @@ from procs.behaviour.ballistics import hardest_kick_m_s, kick_speed_m_s
 from procs.behaviour.bodies import Bodies
 from procs.behaviour.obstacles import is_in_goal, reachable
 from procs.model.field import Field, Point
-from procs.model.geometry import clamp, plausible
+from procs.model.geometry import BOUND, clamp, plausible
 
 _DRIVES = ("goto", "dribble")
 """The robot's middle goes to the place."""
@@ -28,8 +28,9 @@ def accepted_place(skill: str, place: Point, field: Field, bodies: Bodies) -> Po
 
 def mistake(command: skill_command_t, field: Field, bodies: Bodies) -> str:
     """Returns why the command of a known skill cannot be carried out, and what could be; empty if it can."""
-    if not plausible(command.x_m, command.y_m, command.heading_rad, command.speed_m_s):
-        return "the target is not a place on the field, or the speed is not a number"
+    for name in ("x_m", "y_m", "heading_rad", "speed_m_s"):
+        if not plausible(value := getattr(command, name)):
+            return f"{name} is {value:g}; it should be a number between {-BOUND:g} and {BOUND:g}"
     if command.skill in _DRIVES and (reason := _in_goal(Point(command.x_m, command.y_m), field, bodies)):
         return reason
     place = accepted_place(command.skill, Point(command.x_m, command.y_m), field, bodies)

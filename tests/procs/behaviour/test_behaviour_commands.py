@@ -1,5 +1,6 @@
 """Commands that the skills cannot carry out."""
 
+import math
 from typing import Any
 
 import pytest
@@ -34,6 +35,8 @@ def found(**command: Any) -> str:
         ),
         ({"skill": "pass", "x_m": 12.5}, "x_m is 12.5; between the walls the place can be from -12 to 12"),
         ({"skill": "pass", "speed_m_s": -3.0}, "speed_m_s is -3; it should be above 0, or 0 for the skill's own speed"),
+        ({"skill": "goto", "x_m": 2e4}, "x_m is 20000; it should be a number between -10000 and 10000"),
+        ({"skill": "stop", "speed_m_s": math.inf}, "speed_m_s is inf; it should be a number between -10000 and 10000"),
         ({"skill": "goto", "speed_m_s": -1.0}, "speed_m_s is -1; it should be above 0, or 0 for the skill's own speed"),
     ],
 )
