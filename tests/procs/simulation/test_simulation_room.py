@@ -22,8 +22,8 @@ GOALS = [(11.0, 1.26), (-11.6, 1.2), (11.62, 0.0), (-11.3, -1.27)]
 
 def world_of(*messages: place_robot_t | place_ball_t) -> tuple[MemorySystem, ground_truth_t]:
     """Returns a match without agents and its truth after the commands, carried out one a tick."""
-    free = [f"world/referee.{wait}_s=0" for wait in ("kick_off_stoppage", "positions")]  # else it puts the ball back
-    system = system_of("soccer-truth.yaml", lambda name: not name.endswith("/agent"), sets=free)
+    by_hand = ["world/referee.automatic=false"]  # otherwise the referee has the ball of the kick-off put back
+    system = system_of("soccer-truth.yaml", lambda name: not name.endswith("/agent"), sets=by_hand)
     system.tick(2)
     for message in messages:
         system.come_in(f"world/{type(message).__name__.removesuffix('_t')}@outside", message)
