@@ -58,10 +58,10 @@ class Stretch:
         self.released = self.released or (taken and rolled)
         return rolled
 
-    def begin_play(self, ball: Point, team: Team) -> None:
-        """Goes on as play, with or without the set piece of a team having been taken."""
+    def begin_play(self, ball: Point, late: Team) -> None:
+        """Goes on as play, with or without the set piece having been taken; `late` is the team that did not in time."""
         if not self.touches.robots and self.piece is not State.DROP_BALL:
-            self.piece, self.touches.late = State.PLAY, team
+            self.piece, self.touches.late = State.PLAY, late
         self._resting_at, self._resting_s = ball, 0.0
 
     def fouls(self, scene: Scene) -> tuple[Foul | None, Foul | None]:

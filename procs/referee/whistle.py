@@ -328,7 +328,7 @@ class Whistle:
             if self.state is State.PENALTY and not touched:
                 self.interrupt(self._goal_kick(), Reason.NOT_TAKEN)
             else:
-                self._play(ball)
+                self._play(ball, late=True)
 
     def _watch_penalty(self, scene: Scene) -> None:
         """Watches a penalty that is one shot: one of those that decide a match, or the last act of a half.
@@ -384,8 +384,8 @@ class Whistle:
         assert self.shootout
         return restarts.penalty(self.shootout.shooter, self.rules.field, self.ends)
 
-    def _play(self, ball: Point) -> None:
-        self._stretch.begin_play(ball, self.team)
+    def _play(self, ball: Point, late: bool = False) -> None:
+        self._stretch.begin_play(ball, self.team if late else Team.NONE)
         self._enter(State.PLAY, Team.NONE, stopped=False)
 
     def _enter(self, state: State, team: Team, stopped: bool) -> None:

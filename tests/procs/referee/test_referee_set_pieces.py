@@ -92,6 +92,16 @@ def test_late_set_piece_needs_a_second_robot_of_its_team(touching: list[str], sc
     assert script.reasons == ([] if any(score) else ["no second robot touched the ball"])
 
 
+def test_ball_that_is_put_elsewhere_makes_no_set_piece_late() -> None:
+    """As by hand, or in a scenario that begins with the ball before an attacker: play begins without a set piece."""
+    script = Script().started()
+    script.roll(3.0, 0.0)
+    assert script.state == (State.PLAY, Team.NONE, False)
+    script.touch("cyan2")
+    script.goal(11.2, "cyan2")
+    assert (script.score, script.reasons) == ((1, 0), [])
+
+
 def test_dropped_ball_needs_two_robots_however_late() -> None:
     script = Script(deadlock_s=1.0).playing()
     script.wait(1.1)

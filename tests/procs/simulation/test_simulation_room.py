@@ -6,7 +6,7 @@ import pytest
 
 from fwk.testing import Bench, MemorySystem, system_of
 from lcmtypes.core import answer_t
-from lcmtypes.soccer import ground_truth_t, place_ball_t, place_robot_t
+from lcmtypes.soccer import ground_truth_t, place_ball_t, place_robot_t, referee_command_t
 from procs.model.ball import BALL
 from procs.model.field import SIDES, Field, Point
 from procs.model.robot import ROBOT
@@ -21,10 +21,11 @@ GOALS = [(11.0, 1.26), (-11.6, 1.2), (11.62, 0.0), (-11.3, -1.27)]
 
 
 def world_of(*messages: place_robot_t | place_ball_t) -> tuple[MemorySystem, ground_truth_t]:
-    """Returns a match without agents and its truth after the commands, carried out one a tick."""
-    by_hand = ["world/referee.automatic=false"]  # otherwise the referee has the ball of the kick-off put back
+    """Returns a match without agents, led by hand, and its truth after the commands, carried out one a tick."""
+    by_hand = ["world/referee.automatic=false"]  # otherwise fouls of the robots would have the ball put elsewhere
     system = system_of("soccer-truth.yaml", lambda name: not name.endswith("/agent"), sets=by_hand)
-    system.tick(2)
+    system.come_in("world/referee_command@outside", referee_command_t(name="start"))
+    system.tick(4)
     for message in messages:
         system.come_in(f"world/{type(message).__name__.removesuffix('_t')}@outside", message)
         system.tick()
