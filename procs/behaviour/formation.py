@@ -15,7 +15,7 @@ _OWN_SET_PIECE_M, _THEIR_SET_PIECE_M, _DROPPED_BALL_M = 2.3, 3.3, 1.3
 """Distances from the ball of a set piece: those of the rules and 0.3 m more."""
 _PASSES_M, _TOO_NEAR_M = 0.1, 0.15  # a robot passes the circle, or is too near and leaves it, so much nearer
 _TAKER_M = 0.75  # from the middle of a waiting taker to the ball
-_LAYOFF_M, _LAYOFF_RAD = 2.4, (0.55, 0.8, 1.1, 1.5)
+_LAYOFF_M, _LAYOFF_RAD = 2.4, (0.55, 0.8, 1.1, 1.5, 1.9)
 """Distance of the receiver from the ball of the own set piece, and its least angle off the straight way back."""
 _AREA_M = 0.35
 """Robots without the ball keep that distance from the penalty areas."""

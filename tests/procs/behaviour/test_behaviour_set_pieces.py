@@ -57,6 +57,14 @@ def test_receiver_waits_within_the_rules_and_the_reach_of_a_pass(game: Game) -> 
     assert misplaced(restart, {"cyan2": game.spot, "cyan3": place}) == []
 
 
+@pytest.mark.parametrize("spot", [Point(-10.25, 6.9), Point(-10.25, -6.9), Point(-10.0, 6.9)])
+def test_receiver_at_the_own_corner_is_inside_the_field(spot: Point) -> None:
+    """Behind its goal line it took the ball along, out of the field, and the rivals had a corner kick."""
+    game = Game(State.THROW_IN, stopped=True, whose=Whose.OURS, spot=spot)
+    places = [set_pieces.receiver_place(variant, game, FIELD) for variant in BOOK[game.state]]
+    assert all(FIELD.in_field(*place, -0.3) for place in places)
+
+
 @pytest.mark.parametrize("game", GAMES, ids=name_of)
 def test_variant_whose_way_is_blocked_is_passed_over(game: Game) -> None:
     places = [set_pieces.receiver_place(variant, game, FIELD) for variant in BOOK[game.state]]
