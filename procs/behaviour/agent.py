@@ -72,6 +72,8 @@ class Agent(Component):
 
     def config_changed(self) -> None:
         self._bodies = Bodies.of(self.config.robot, self.config.ball)
+        if self._tactics.field != self.config.field:
+            self._tactics = Tactics(self.config.field)
 
     @property
     def _team(self) -> Team:

@@ -57,7 +57,7 @@ class Crew(Component):
 
     def init(self) -> None:
         self._left = sorted(self.config.actions, key=lambda action: action.at_s)
-        self._asked: list[Call] = []
+        self._asked: list[tuple[Action, Call]] = []
         self.refused: list[str] = []
         """Actions that the simulator or the referee did not carry out, and why."""
 
@@ -70,11 +70,11 @@ class Crew(Component):
     def loop(self) -> None:
         while self._left and self._left[0].at_s * 1e6 <= self.clock.now_us:
             self._do(self._left.pop(0))
-        for call in [each for each in self._asked if each.finished]:
-            self._asked.remove(call)
+        for action, call in [each for each in self._asked if each[1].finished]:
+            self._asked.remove((action, call))
             if not call.done:
-                self.refused.append(call.reason)
-                self.log.error(f"refused: {call.reason}")
+                self.refused.append(f"refused: the command at {action.at_s:g} s: {call.reason}")
+                self.log.error(self.refused[-1])
 
     def _do(self, action: Action) -> None:
         for port, fields in (
@@ -86,4 +86,4 @@ class Crew(Component):
                 port.value = type(port.value)()  # what an action does not name is not that of the one before
                 for name, value in fields.items():
                     setattr(port.value, name, value)
-                self._asked.append(port.call())
+                self._asked.append((action, port.call()))

@@ -237,7 +237,7 @@ def outcome(scenario: Scenario) -> Verdict:
     while verdict.ok and crew.unanswered and verdict.time_s < scenario.time_s - 1e-9:  # it ended before its commands
         system.tick()
         verdict.time_s = system.now_us / 1e6
-    verdict.broken += [f"refused: {reason}" for reason in crew.refused]
+    verdict.broken += crew.refused
     if verdict.ok:
         verdict.broken += crew.unanswered
     return verdict

@@ -109,6 +109,8 @@ def main() -> None:
     asked = parser.parse_args()
     if asked.file.suffix not in _SUFFIXES:
         raise SystemExit(f"'{asked.file}' ends in '{asked.file.suffix}'; it should end in {' or '.join(_SUFFIXES)}")
+    if not asked.file.absolute().parent.is_dir():
+        raise SystemExit(f"'{asked.file}' cannot be written: there is no folder '{asked.file.parent}'")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "sight.yaml"
         file.write_text(_LAUNCH.format(file=asked.launch, config=_FINE))
@@ -128,7 +130,7 @@ def main() -> None:
     if picture is None:
         raise SystemExit(f"no picture of {asked.robot}/image until {asked.time:g} s; a later --time would show one")
     if not cv2.imwrite(str(asked.file), picture):
-        raise SystemExit(f"'{asked.file}' cannot be written; does its folder exist?")
+        raise SystemExit(f"'{asked.file}' cannot be written")
 
 
 if __name__ == "__main__":

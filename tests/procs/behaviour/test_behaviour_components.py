@@ -20,6 +20,7 @@ from procs.behaviour.agent import Agent
 from procs.behaviour.navigator import Navigator
 from procs.behaviour.skiller import Skiller
 from procs.behaviour.skills.book import SKILLS
+from procs.model.field import Field
 from procs.referee.referee import Referee
 from tests.procs.behaviour.behaviour_parts import newest
 
@@ -48,6 +49,19 @@ def test_both_teams_decide_alike(robot: str, sign: float) -> None:
     assert command.skill == "shoot"
     assert command.x_m == sign * 11.0
     assert newest(bench, "role").role == "attacker"
+
+
+def test_agent_plays_on_a_field_that_was_changed() -> None:
+    bench = Bench(Agent, "cyan2/agent")
+    aims_m = []
+    for length_m in (22.0, 18.0):
+        bench.component.config.field = Field(length_m=length_m)
+        bench.component.config_changed()
+        put_situation(bench, x_m=2.0, ball=seen_ball(6.0, 0.5))
+        bench.port("kicker_state").put(ball_held=True)
+        bench.iterate()
+        aims_m.append(newest(bench, "skill").x_m)
+    assert aims_m == [11.0, 9.0]
 
 
 def role_of_the_farther_robot(use_roles: bool, state: int) -> str:

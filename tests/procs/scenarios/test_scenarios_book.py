@@ -182,7 +182,7 @@ def test_file_that_cannot_be_read_is_named(
 def test_command_that_is_refused_breaks_a_scenario(tmp_path: Path) -> None:
     text = "dummies: [cyan2]\ncommands: [{referee: {name: subgoal, team: cyan}}]\nalways: [x(cyan2) < 0]\ntime_s: 0.3\n"
     (refused,) = run(written(tmp_path, text)).broken
-    assert refused == "refused: cyan has no goal to take back"
+    assert refused == "refused: the command at 0 s: cyan has no goal to take back"
 
 
 def test_command_has_nothing_of_the_one_before(tmp_path: Path) -> None:
@@ -192,7 +192,9 @@ def test_command_has_nothing_of_the_one_before(tmp_path: Path) -> None:
         "  - {at_s: 0.4, referee: {name: goal}}\n"
         "in_order: [abs(y(ball)) > 1, x(ball) > 4.9 and abs(y(ball)) < 0.1 and ball_speed < 0.1]\ntime_s: 0.8\n"
     )
-    assert run(written(tmp_path, text)).broken == ["refused: a goal needs a team: cyan or magenta"]
+    assert run(written(tmp_path, text)).broken == [
+        "refused: the command at 0.4 s: a goal needs a team: cyan or magenta"
+    ]
 
 
 @pytest.mark.parametrize(

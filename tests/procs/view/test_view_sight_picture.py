@@ -68,7 +68,7 @@ def test_command_draws_the_camera_of_a_match(tmp_path: Path, monkeypatch: pytest
     ("words", "mistake"),
     [
         (["sight.xyz"], "'sight.xyz' ends in '.xyz'; it should end in .png or .jpg"),
-        (["nowhere/sight.png", "--launch", "soccer-1v1.yaml", "--robot", "cyan1"], "'nowhere/sight.png' cannot be"),
+        (["nowhere/sight.png"], "'nowhere/sight.png' cannot be written: there is no folder 'nowhere'"),
         (["sight.png", "--launch", "soccer-1vs1.yaml"], "there is no 'soccer-1vs1.yaml' to include"),
         (
             ["sight.png", "--robot", "cyan9"],
