@@ -5,6 +5,7 @@ import os
 import socket
 
 from fwk import Clock, Logger
+from procs.refbox.lookup import Lookup
 from procs.refbox.protocol import ProtocolError, Stream
 
 _HEARD = 65_536  # bytes taken from the RefBox in a tick
@@ -19,6 +20,7 @@ class Connection:
         self._log = log
         self._socket: socket.socket | None = None
         self._dialling: socket.socket | None = None
+        self._lookup: Lookup | None = None  # of a connection that is being made
         self._address = ("", 0)
         self._dialled_us = 0
         self._stream = Stream()
@@ -44,7 +46,7 @@ class Connection:
         self._retry_s = retry_s
         if (host, port) != self._address:
             self.close()
-            self._socket = self._dialling = None
+            self._socket = self._dialling = self._lookup = None
             self._address, self._again_us, self._reason = (host, port), 0, ""
         if self._socket is not None:
             self._send_rest()
@@ -78,30 +80,43 @@ class Connection:
             each.close()
 
     def _dial(self, host: str, port: int, connect_s: float) -> None:
-        """Begins to connect, or goes on, without waiting for the RefBox."""
+        """Begins to connect, or goes on, without waiting for the RefBox or the address of its name."""
+        if self._lookup is None:
+            self._lookup, self._dialled_us = Lookup(host, port), self._clock.now_us
+        if not self._lookup.done:  # the next try waits for it, too
+            if self._clock.since_s(self._dialled_us) >= connect_s:
+                self._fail(f"no address of that name for {connect_s:g} s")
+            return
+        code, reason = self._reach(self._lookup)
+        if code in _UNDER_WAY and self._clock.since_s(self._dialled_us) < connect_s:
+            return
+        dialled, self._dialling, self._lookup = self._dialling, None, None
+        if dialled is not None and code in (0, errno.EISCONN):
+            self._socket, self._stream, self._reason, self._unsent = dialled, Stream(), "", b""
+            self._log.info(f"connected with the RefBox at {host}:{port}")
+            return
+        if dialled is not None:
+            dialled.close()
+        self._fail(f"no answer for {connect_s:g} s" if code in _UNDER_WAY else reason)
+
+    def _reach(self, found: Lookup) -> tuple[int, str]:
+        """Begins or goes on to connect; returns the system's code and its text."""
+        if found.reason:
+            return errno.EHOSTUNREACH, found.reason
         if self._dialling is None:
-            self._dialling = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
+            self._dialling = socket.socket(found.family)
             self._dialling.setblocking(False)
             self._dialled_us = self._clock.now_us
-        try:
-            code = self._dialling.connect_ex((host, port))
-            reason = os.strerror(code)
-        except OSError as error:  # no such host
-            code, reason = errno.EHOSTUNREACH, str(error)
-        if code in _UNDER_WAY:
-            if self._clock.since_s(self._dialled_us) < connect_s:
-                return
-            reason = f"no answer for {connect_s:g} s"
-        dialled, self._dialling = self._dialling, None
-        if code not in (0, errno.EISCONN):
-            dialled.close()
-            self._try_later()
-            if reason != self._reason:
-                self._log.warning(f"no RefBox at {host}:{port}: {reason}; it is tried again every {self._retry_s:g} s")
-            self._reason = reason
-            return
-        self._socket, self._stream, self._reason, self._unsent = dialled, Stream(), "", b""
-        self._log.info(f"connected with the RefBox at {host}:{port}")
+        code = self._dialling.connect_ex(found.address)
+        return code, os.strerror(code)
+
+    def _fail(self, reason: str) -> None:
+        """Tries again later; a new reason is logged."""
+        self._try_later()
+        if reason != self._reason:
+            host, port = self._address
+            self._log.warning(f"no RefBox at {host}:{port}: {reason}; it is tried again every {self._retry_s:g} s")
+        self._reason = reason
 
     def _send_rest(self) -> None:
         if self._socket is None or not self._unsent:

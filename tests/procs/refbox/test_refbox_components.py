@@ -2,6 +2,7 @@
 
 import contextlib
 import socket
+import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -179,6 +180,34 @@ def test_client_tries_again_and_says_once_why() -> None:
     refused = f"no RefBox at 127.0.0.1:{free}: Connection refused; it is tried again every 0.2 s"
     found = [f"connected with the RefBox at 127.0.0.1:{free}", "lost the RefBox: it closed the connection"]
     assert said == [refused, *found] * 2
+
+
+def test_silent_name_server_holds_nothing_up(refbox: socket.socket, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The lookup of a name takes as long as the name server likes; ticks go on meanwhile."""
+    answered, looked_up, ask = threading.Event(), threading.Event(), socket.getaddrinfo
+
+    def slow(host: str, *arguments: Any, flags: int = 0, **more: Any) -> Any:
+        if flags & socket.AI_NUMERICHOST:
+            return ask(host, *arguments, flags=flags, **more)
+        answered.wait(10.0)
+        found = ask("127.0.0.1", *arguments, **more)
+        looked_up.set()
+        return found
+
+    monkeypatch.setattr(socket, "getaddrinfo", slow)
+    port = refbox.getsockname()[1]
+    bench = Bench(RefBoxClient, "world/refbox", host="refbox.example", port=port, retry_s=0.2, connect_s=0.5)
+    bench.iterate(30)
+    assert not answered.is_set()
+    answered.set()
+    assert looked_up.wait(10.0)
+    while not any("connected" in line.text for line in bench.logged):
+        bench.iterate()
+    refbox.accept()[0].close()
+    bench.finalize()
+    where = f"RefBox at refbox.example:{port}"
+    late = f"no {where}: no address of that name for 0.5 s; it is tried again every 0.2 s"
+    assert [line.text for line in bench.logged] == [late, f"connected with the {where}"]
 
 
 def test_client_goes_to_a_new_address_at_once(refbox: socket.socket) -> None:
