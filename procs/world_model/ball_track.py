@@ -201,9 +201,10 @@ class BallTrack:
         """Returns the effect of robots, posts and walls on a known ball in a step that ends now."""
         assert self.filter is not None
         robots = step.robots
-        if robots is None or (self.flight is not None and self.flight.height_m > robots.height_m):
+        if robots is None:
             return Contact(probability=step.contact)
-        found = robots.contact(self.filter, duration_s, (step.end_us - self.time_us) / US_PER_S + duration_s)
+        before_s = (step.end_us - self.time_us) / US_PER_S + duration_s
+        found = robots.contact(self.filter, duration_s, before_s, self.flight)
         return found._replace(probability=max(found.probability, step.contact))
 
     def see(self, sighting: Sighting, others: Sequence[Sighting] = ()) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_modes import NO_CONTACT, Contact
+from procs.world_model.flight import Flight
 
 _HULL_M = 0.03  # from the distance in the mouth to that beside it
 _HULL_SD_M = 0.03  # deviation of the distance at which a robot touches the ball: its mouth is flat, its back round
@@ -14,6 +15,7 @@ _FLEES_M_S = 0.5  # a ball that surely leaves a robot faster than that was kicke
 _NEAR_M = 2.5  # robots further from the ball cannot touch it, not even if it was kicked in the last ticks
 _RAMS_M_S = 2.0  # a ball that approaches a robot slower is handled by it
 _DENT_M = 0.08  # a ball that would be nearer than the touch by so much cannot have run on
+_SURELY_OVER = 1e-3  # probability of being low below which a ball passes over robots
 _BOUNCE = 0.2  # share of the speed towards a robot with which a ball leaves it, on average over mouths and hulls
 
 RobotRow = tuple[float, float, float, float, float]
@@ -37,13 +39,16 @@ class Robots:
         near = (row for row in robots if math.hypot(row[0] - x_m, row[1] - y_m) < _NEAR_M)
         return cls(tuple(near), touch_m, height_m)
 
-    def contact(self, ball: BallFilter, duration_s: float, before_s: float) -> Contact:
-        """Returns their effect on the ball in a step that begins `before_s` before the end of the tick."""
-        if not self.rows:
+    def contact(self, ball: BallFilter, duration_s: float, before_s: float, flight: Flight | None = None) -> Contact:
+        """Returns their effect on the ball in a step that begins `before_s` before the end of the tick.
+
+        A ball that rises may be higher than a robot when it gets there, and one that falls may be lower.
+        """
+        if not self.rows or (self._flies_over(flight, 0.0) and self._flies_over(flight, duration_s)):
             return NO_CONTACT
         x_m, y_m, vx_m_s, vy_m_s, place_m2, speed_m2_s2 = ball.likeliest
         ball_m2, deviation_m_s = min(_MOST_M**2, place_m2), math.sqrt(speed_m2_s2)
-        likely, hit = -math.inf, NO_CONTACT
+        probability, hit = 0.0, NO_CONTACT
         for robot_x_m, robot_y_m, robot_vx_m_s, robot_vy_m_s, robot_m2 in self.rows:
             away = x_m - robot_x_m + robot_vx_m_s * before_s, y_m - robot_y_m + robot_vy_m_s * before_s
             past = vx_m_s - robot_vx_m_s, vy_m_s - robot_vy_m_s
@@ -52,11 +57,21 @@ class Robots:
             if -closing_m_s - 2 * deviation_m_s >= _FLEES_M_S:
                 continue
             spread_m = math.sqrt(ball_m2 + robot_m2 + _HULL_SD_M**2)
-            gap_m = way_m - self.touch_m - _HULL_M - duration_s * max(closing_m_s, 0.0)
-            likely = max(likely, -gap_m / spread_m)
+            gap_m = way_m - self.touch_m - _HULL_M
+            reaches_s = min(max(0.0, gap_m), duration_s * closing_m_s) / closing_m_s if closing_m_s > 0.0 else 0.0
+            reaches = _normal((duration_s * max(closing_m_s, 0.0) - gap_m) / spread_m)
+            probability = max(probability, reaches * self._is_low(flight, reaches_s))
             if closing_m_s > _RAMS_M_S:
-                hit = max(hit, self._hit(away, past, closing_m_s, duration_s, spread_m))
-        return hit._replace(probability=_normal(likely))
+                found = self._hit(away, past, closing_m_s, duration_s, spread_m)
+                hit = max(hit, found._replace(hit=found.hit * self._is_low(flight, found.after_s)))
+        return hit._replace(probability=probability)
+
+    def _is_low(self, flight: Flight | None, after_s: float) -> float:
+        """Returns the probability that a ball is not above the robots after a part of the step."""
+        return 1.0 if flight is None else flight.probably_below(self.height_m, after_s)
+
+    def _flies_over(self, flight: Flight | None, after_s: float) -> bool:
+        return self._is_low(flight, after_s) < _SURELY_OVER
 
     def _hit(
         self,

@@ -77,6 +77,11 @@ class Flight:
             self.lift_m2_s2 - lift_gain_1_s * self.both_m2_s,
         )
 
+    def probably_below(self, height_m: float, duration_s: float) -> float:
+        """Returns the probability that the ball will be lower than that after a step in the air."""
+        then = self._in_the_air(duration_s)
+        return 0.5 * math.erfc((then.height_m - height_m) / math.sqrt(2.0 * then.height_m2))
+
     def _in_the_air(self, duration_s: float) -> "Flight":
         fallen_m_s = _GRAVITY_M_S2 * duration_s
         return Flight(

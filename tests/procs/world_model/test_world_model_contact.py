@@ -11,6 +11,7 @@ from procs.world_model.ball_modes import NO_CONTACT, Contact
 from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.contact import RobotRow, Robots
+from procs.world_model.flight import Flight
 
 TOUCH_M = 0.33
 ROBOT_M2 = 0.03**2
@@ -126,6 +127,23 @@ def test_ball_that_flies_over_a_robot_is_not_hit() -> None:
     for _ in range(10):
         tracker.advance(STEP_S, 2.0, robots=robots((1.9, 0.0, 0.0, 0.0, ROBOT_M2)))
     assert tracker.track.state[0] == pytest.approx(5.0 * 0.475, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("height_m", "lift_m_s", "likely"),
+    [
+        pytest.param(0.75, 0.0, True, id="low"),
+        pytest.param(0.75, 4.0, False, id="rises over it"),
+        pytest.param(0.85, -4.0, True, id="falls upon it"),
+        pytest.param(0.85, 0.0, False, id="high"),
+    ],
+)
+def test_height_counts_where_the_ball_meets_the_robot(height_m: float, lift_m_s: float, likely: bool) -> None:
+    """A lob that rose above a rival within the tick seemed to bounce off, and its kicker lost it."""
+    flight = Flight(height_m, lift_m_s, 0.01**2, 0.0, 0.1**2)
+    found = robots((0.6, 0.0, 0.0, 0.0, ROBOT_M2)).contact(ball(11.5), STEP_S, STEP_S, flight)
+    for probability in (found.hit, found.probability):
+        assert probability > 0.8 if likely else probability < 0.1
 
 
 def test_deflected_ball_is_found_by_the_next_sighting() -> None:
