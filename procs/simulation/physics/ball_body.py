@@ -59,11 +59,15 @@ class Ball:
         """
         if not self.flies:
             return False
+        landing_m_s = math.sqrt(self.vz_m_s**2 + 2 * GRAVITY_M_S2 * max(0.0, self.z_m - floor_m))
+        gained_m_s = GRAVITY_M_S2 * duration_s
         self.z_m += self.vz_m_s * duration_s - GRAVITY_M_S2 * duration_s**2 / 2
-        self.vz_m_s -= GRAVITY_M_S2 * duration_s
+        self.vz_m_s -= gained_m_s
         landed = self.z_m <= floor_m
         if landed:
-            self._bounce_off(floor_m, self._bounce if bounce is None else bounce)
+            # The step ends below the floor, where the ball is faster than it was at the floor.
+            rebound_m_s = min(landing_m_s, -self.vz_m_s * (self._bounce if bounce is None else bounce))
+            self._bounce_off(floor_m, rebound_m_s, least_m_s=gained_m_s)
         self._shape.filter = ball_filter(self.z_m >= self._robot_height_m, self.z_m > self._goal_height_m)
         return landed
 
@@ -81,7 +85,7 @@ class Ball:
         self.z_m, self.vz_m_s = max(0.0, height_m), vz_m_s
         self.body.velocity = (vx_m_s, vy_m_s)
         if not self.z_m and vz_m_s < 0.0:
-            self._bounce_off(0.0, self._bounce)
+            self._bounce_off(0.0, -self._bounce * vz_m_s)
 
     def put(self, x_m: float, y_m: float) -> None:
         """Lays the ball down at rest."""
@@ -92,7 +96,7 @@ class Ball:
         self.body.angular_velocity = 0.0
         self.friction.roll(0.0, 0.0)
 
-    def _bounce_off(self, floor_m: float, bounce: float) -> None:
-        """Sends the ball, which has reached a floor, up again; a slow one stays there."""
-        rebound_m_s = -bounce * self.vz_m_s
-        self.z_m, self.vz_m_s = floor_m, rebound_m_s if rebound_m_s > self._least_rebound_m_s else 0.0
+    def _bounce_off(self, floor_m: float, rebound_m_s: float, least_m_s: float = 0.0) -> None:
+        """Sends the ball, which has reached a floor, up again; one that is not faster than `least_m_s` stays there."""
+        rises = rebound_m_s > max(self._least_rebound_m_s, least_m_s)
+        self.z_m, self.vz_m_s = floor_m, rebound_m_s if rises else 0.0

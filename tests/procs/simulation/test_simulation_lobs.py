@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from procs.model.ball import BALL
+from procs.model.ball import BALL, BallModel
 from procs.model.events import Event, Kind
 from procs.model.robot import ROBOT
 from procs.simulation.physics.start_places import Pose
@@ -69,3 +69,23 @@ def test_ball_put_down_behind_a_bar_has_not_hit_it(height_m: float) -> None:
     world.throw_ball(height_m, (0.0, 0.0, 0.0))
     run(world, 1)
     assert world.ball.body.position == pytest.approx((11.3, 0.5))
+
+
+@pytest.mark.parametrize("bounce", [0.9, 0.99, 1.0])
+def test_bouncing_ball_rises_no_higher_than_before(bounce: float) -> None:
+    world = World([], np.random.default_rng(1), ball=BallModel(bounce=bounce))
+    world.place_ball(0.0, 0.0)
+    world.throw_ball(1.0, (0.0, 0.0, 0.0))
+    for _ in range(2000):
+        world.advance(10_000)
+        assert world.ball.z_m <= 1.0
+
+
+@pytest.mark.parametrize("bounce", [0.0, 0.6, 1.0])
+def test_ball_that_bounces_to_the_last_comes_to_rest(bounce: float) -> None:
+    """The ground brakes it once it stays down, however small the least rebound is."""
+    world = World([], np.random.default_rng(1), ball=BallModel(bounce=bounce, least_rebound_m_s=0.0))
+    world.place_ball(0.0, 0.0)
+    world.throw_ball(0.0001, (1.0, 0.0, 0.0))
+    run(world, 150)
+    assert (world.ball.z_m, world.ball.speed_m_s) == (0.0, 0.0)
