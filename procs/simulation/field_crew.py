@@ -5,6 +5,7 @@ import math
 from fwk import Serves
 from lcmtypes.soccer import freeze_world_t, place_ball_t, place_robot_t, reset_world_t
 from procs.model.field import Field
+from procs.simulation.physics.ball_body import THROW_LIMIT_M_S
 from procs.simulation.physics.start_places import Pose
 from procs.simulation.physics.world import World
 
@@ -70,9 +71,9 @@ class FieldCrew:
     def _mistake_in_ball(self, wanted: place_ball_t) -> str:
         for name, value, least, most in (
             ("z_m", wanted.z_m, 0.0, _HIGHEST_M),
-            ("vx_m_s", wanted.vx_m_s, -_FASTEST_M_S, _FASTEST_M_S),
-            ("vy_m_s", wanted.vy_m_s, -_FASTEST_M_S, _FASTEST_M_S),
-            ("vz_m_s", wanted.vz_m_s, -_FASTEST_M_S, _FASTEST_M_S),
+            ("vx_m_s", wanted.vx_m_s, -THROW_LIMIT_M_S, THROW_LIMIT_M_S),
+            ("vy_m_s", wanted.vy_m_s, -THROW_LIMIT_M_S, THROW_LIMIT_M_S),
+            ("vz_m_s", wanted.vz_m_s, -THROW_LIMIT_M_S, THROW_LIMIT_M_S),
         ):
             if not least <= value <= most:
                 return f"{name} is {value}; it should be from {least:g} to {most:g}"
@@ -86,4 +87,3 @@ class FieldCrew:
 
 _NO_ROOM_FOR_BALL = "there is no room left for the ball between the walls"
 _HIGHEST_M = 5.0
-_FASTEST_M_S = 15.0

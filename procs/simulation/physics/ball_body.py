@@ -5,11 +5,19 @@ import math
 import pymunk
 
 from procs.model.ball import BallModel
-from procs.model.robot import ROBOT
-from procs.simulation.physics.arena import BALL, ball_filter
+from procs.model.robot import ROBOT, RobotModel
+from procs.simulation.physics.arena import BALL, NET_RADIUS_M, ball_filter
 from procs.simulation.physics.rolling import RollingFriction
 
 GRAVITY_M_S2 = 9.81
+THROW_LIMIT_M_S = 15.0
+"""Largest part of a thrown ball's velocity along each axis."""
+
+
+def longest_step_within_nets_s(ball: BallModel, robot: RobotModel) -> float:
+    """Returns the longest step in which no ball gets from one side of a net to the other."""
+    fastest_m_s = max(math.sqrt(2) * THROW_LIMIT_M_S, robot.kick_limit_m_s + robot.wheel_limit_m_s)
+    return (ball.radius_m + NET_RADIUS_M) / fastest_m_s
 
 
 class Ball:

@@ -113,5 +113,5 @@ class PhysicsSettings(_Settings):
     battery: BatterySettings = BatterySettings()
     step_s: Annotated[float, Field(gt=0.0, le=0.005)] = 0.005
     """Longest step of the integration; a tick is cut into equal steps no longer than this. With a small
-    `full_slip_m_s`, much traction or wheels far out, the force of a wheel would oscillate with its slip; steps are then
-    shorter."""
+    `full_slip_m_s`, much traction or wheels far out, the force of a wheel would oscillate with its slip, and a small
+    ball would get through nets; steps are then shorter."""

@@ -12,7 +12,7 @@ from procs.model.field import Field, Point
 from procs.model.geometry import clamp
 from procs.model.robot import PLAYERS, ROBOT, Player, RobotModel
 from procs.simulation.physics.arena import build_arena
-from procs.simulation.physics.ball_body import GRAVITY_M_S2, Ball
+from procs.simulation.physics.ball_body import GRAVITY_M_S2, Ball, longest_step_within_nets_s
 from procs.simulation.physics.battery import Battery
 from procs.simulation.physics.bodies import Bodies, State
 from procs.simulation.physics.contacts import Contacts
@@ -69,7 +69,9 @@ class World:
         self._field = field or Field()
         self._robot = robot
         self._physics = physics or PhysicsSettings()
-        self._step_s = min(self._physics.step_s, longest_step_s(robot, self._physics.drive))
+        self._step_s = min(
+            self._physics.step_s, longest_step_s(robot, self._physics.drive), longest_step_within_nets_s(ball, robot)
+        )
         noise = noise or Noise()
         self._space = pymunk.Space()
         self._space.collision_slop = 0.001  # pymunk's default is meant for pixels: here it would be 10 cm

@@ -73,6 +73,17 @@ def test_world_stays_finite_and_between_its_walls(kind: type[BaseModel], name: s
             assert body.velocity.length < 60.0
 
 
+@pytest.mark.parametrize("radius_m", [0.01, 0.02, 0.05, 0.11])
+def test_net_keeps_a_ball_of_any_size(radius_m: float) -> None:
+    for start_m in np.arange(9.0, 9.1, 0.01).tolist():
+        world = World([], np.random.default_rng(1), ball=BallModel(radius_m=radius_m))
+        world.place_ball(start_m, 0.3)
+        world.throw_ball(0.0, (15.0, 0.0, 0.0))
+        for _ in range(10):
+            world.advance(TICK_US)
+        assert world.ball.body.position.x < 11.6, f"thrown from {start_m:g} m"
+
+
 @pytest.mark.parametrize(
     ("wheel_distance_m", "drive"),
     [
