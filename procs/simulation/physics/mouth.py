@@ -22,7 +22,7 @@ class Mouth:
         self._handling = handling
         self.ball_mass_kg = ball.mass_kg
         self._pull_m_s2 = handling.pull_m_s2 * strength
-        self.far_m = robot.radius_m + ball.radius_m + handling.reach_m
+        self.far_m = math.hypot(robot.mouth_x_m + ball.radius_m + handling.reach_m, handling.half_width_m)
         """Farthest that the middle of a ball in the mouth can be from the robot's."""
 
     @property

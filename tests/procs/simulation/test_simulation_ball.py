@@ -10,7 +10,7 @@ from procs.model.events import Event, Kind
 from procs.model.kinematics import Velocity, wheels_of
 from procs.simulation.physics.kick_mechanism import KickerCommand
 from procs.simulation.physics.realism import PRESETS, Noise
-from procs.simulation.physics.settings import ContactSettings, KickerSettings, PhysicsSettings
+from procs.simulation.physics.settings import ContactSettings, HandlingSettings, KickerSettings, PhysicsSettings
 from procs.simulation.physics.start_places import Pose
 from procs.simulation.physics.world import World
 
@@ -358,6 +358,15 @@ def test_handling_loses_the_ball_in_a_fast_turn_only() -> None:
         world = ball_in_mouth(PRESETS["realistic"].model_copy(update={"drive_delay_s": 0.0}))
         dribble(world, Velocity(0.0, 0.0, omega_rad_s))
         assert world.kickers["cyan1"].mouth.holds_ball is kept
+
+
+@pytest.mark.parametrize("half_width_m", [0.05, 0.1, 0.3, 0.5])
+def test_light_barrier_is_as_wide_as_set(half_width_m: float) -> None:
+    physics = PhysicsSettings(handling=HandlingSettings(half_width_m=half_width_m))
+    world = World(["cyan1"], np.random.default_rng(1), physics=physics, starts={"cyan1": Pose(0.0, 0.0, 0.0)})
+    for beside_m, held in ((half_width_m - 0.005, True), (half_width_m + 0.005, False)):
+        world.ball.put(IN_MOUTH_M, beside_m)
+        assert world.kickers["cyan1"].mouth.holds_ball is held
 
 
 def rebound_m_s(vx_m_s: float, vy_m_s: float, **contacts: float) -> float:
