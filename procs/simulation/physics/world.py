@@ -180,13 +180,14 @@ class World:
         return [Point(*robot.body.position) for robot in self.robots.values()]
 
     def _clear_ball(self, poses: Mapping[str, Pose], robots: Sequence[Point]) -> bool:
-        """Puts a ball that lies where robots are set down beside all `robots`; returns False if there is no room.
+        """Puts a ball that is where robots are set down beside all `robots`; returns False if there is no room.
 
+        One that flies above them flies on.
         A ball that touches no more than a robot's hull, as in its mouth, stays where it is. One that is in the field
         stays in the field: who sets a robot down scores no goal.
         """
         ball, least_m = self.ball, self.ball.radius_m - _PRESSED_M
-        if ball.flies or all(
+        if ball.z_m >= self._robot.height_m or all(
             self.robots[name].gap_m(pose, *ball.body.position) >= least_m for name, pose in poses.items()
         ):
             return True

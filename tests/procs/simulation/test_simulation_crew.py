@@ -61,6 +61,19 @@ def test_robot_on_the_ball_pushes_it_over_no_line(ball: tuple[float, float], rob
     assert math.dist(robot, (truth.ball_x_m, truth.ball_y_m)) > 0.36
 
 
+@pytest.mark.parametrize(("z_m", "stays"), [(0.02, False), (0.3, False), (0.9, True)])
+def test_robot_set_down_on_a_flying_ball_scores_no_goal(z_m: float, stays: bool) -> None:
+    """A ball above the robot flies on."""
+    world = bench()
+    world.port("place_ball").put(x_m=10.95, y_m=0.3, z_m=z_m, vz_m_s=1.0)
+    world.iterate()
+    world.port("place_robot").put(robot="cyan1", x_m=10.7, y_m=0.3)
+    world.iterate()
+    assert [event for report in world.port("match_events").sent for event in report.events] == []
+    truth = world.port("ground_truth").sent[-1]
+    assert (math.dist((10.7, 0.3), (truth.ball_x_m, truth.ball_y_m)) < 0.36) is stays
+
+
 @pytest.mark.parametrize("heading_rad", [7.0, -1e6, 1e17])
 def test_robot_that_is_set_down_with_many_turns_can_turn(heading_rad: float) -> None:
     world = bench()
