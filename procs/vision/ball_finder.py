@@ -24,6 +24,7 @@ _WHOLE_SPREAD = 1.02  # the same of a whole ball in a picture
 _SPREAD_PX2 = 2.0  # what noise adds to that at most, times the square of the radius in the picture
 _HIDDEN_SHARE = 2.6
 """Relative error of the area of a ball that a robot hides in part, divided by what that adds to its spread."""
+_LEAST_WARMTH = 30.0  # red minus blue of a ball that is told from its surroundings by that
 _FAINT = 0.15  # pixels covered by the ball to a smaller part than this count as noise
 _AREA_PX = 0.2  # relative deviation of an area, times the radius in the picture
 _NEAREST_M = 0.3  # from the viewpoint: nearer is nothing but the robot itself
@@ -181,10 +182,13 @@ def _is_round(blob: _Blob, radius_px: float) -> bool:
 def _cover(window: Picture, solid: Mask) -> Floats:
     """Returns the share of each pixel, 0..1, that the ball covers; `solid` marks those of its colour.
 
-    Carpet, lines, robots and orange differ in many ways, but red minus blue is next to nothing in all but orange.
+    Carpet, lines, robots and orange differ in many ways, but red minus blue is next to nothing in all but orange. Of a
+    ball of another colour, pixels count wholly or not at all.
     """
     warmth: Floats = window[..., 2].astype(np.float64) - window[..., 0]
-    full = max(median(warmth[solid]), 1.0)
+    full = median(warmth[solid])
+    if full < _LEAST_WARMTH:
+        return solid.astype(np.float64)
     cover = (warmth / full).clip(0.0, 1.0)
     cover[cover < _FAINT] = 0.0
     return cover

@@ -13,7 +13,7 @@ from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.sensor_noise import SensorNoise
 from procs.simulation.rendering.shapes import Bodies
 from procs.vision.ball_finder import BallFinder
-from procs.vision.colours import BLACK, CYAN, GREEN, MAGENTA, ORANGE, WHITE, Bgr, ColourRange, Picture
+from procs.vision.colours import BLACK, CYAN, GREEN, MAGENTA, ORANGE, WHITE, Bgr, ColourRange, Hsv, Picture
 from procs.vision.mirror import Mirror
 from procs.vision.omni_ball import OmniBallConfig
 
@@ -233,3 +233,22 @@ def test_odd_picture_size_works_as_well() -> None:
     ball = BallFinder(mirror, FINDER.colour).find(frame)
     assert ball is not None
     assert (ball.x_m, ball.y_m) == pytest.approx((2.0, 0.5), abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("colour", "low", "high"),
+    [
+        ((200, 60, 20), (105, 120, 80), (125, 255, 255)),  # blue
+        ((230, 230, 230), (0, 0, 200), (179, 40, 255)),
+        ((20, 220, 230), (25, 120, 80), (35, 255, 255)),  # yellow
+    ],
+)
+def test_ball_of_another_colour_is_found(colour: Bgr, low: Hsv, high: Hsv) -> None:
+    rng = np.random.default_rng(12)
+    column, row, radius_px = MIRROR.sphere((2.0, 0.5, 0.11), 0.11)
+    rows, columns = np.mgrid[:400, :400]
+    frame = np.full((400, 400, 3), GREEN, np.uint8)
+    frame[np.hypot(columns - column, rows - row) < radius_px] = colour
+    ball = BallFinder(MIRROR, ColourRange(low, high)).find(noise().apply(frame, rng))
+    assert ball is not None
+    assert (ball.x_m, ball.y_m, ball.z_m) == pytest.approx((2.0, 0.5, 0.0), abs=0.03)
