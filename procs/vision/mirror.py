@@ -17,6 +17,8 @@ import numpy as np
 
 from procs.model.algebra import Floats, product
 
+_LEAST = 1e-9  # instead of 0 as a divisor
+
 
 @dataclass(frozen=True)
 class Mirror:
@@ -60,12 +62,13 @@ class Mirror:
     def sphere(self, centre_m: tuple[float, float, float], radius_m: float) -> tuple[float, float, float]:
         """Returns column, row and radius in pixels of the circle as which a sphere appears.
 
-        A sphere straight above the viewpoint is outside the circle; the radius is negative then.
+        A sphere straight above the viewpoint is outside the circle; the radius is negative then. One around the
+        viewpoint, level with it, is seen everywhere; the circle is huge then.
         """
         ray = product(np.array([centre_m]) - (0.0, 0.0, self.height_m), self._from_mirror)[0]
-        distance_m = math.hypot(*ray)
+        distance_m = max(math.hypot(*ray), _LEAST)
         sine = min(radius_m / distance_m, 1.0)
-        spread = math.sqrt(1.0 - sine * sine) - float(ray[2]) / distance_m
+        spread = (math.sqrt(1.0 - sine * sine) - float(ray[2]) / distance_m) or _LEAST
         column, row = self._pixels(ray[None, :2] / (distance_m * spread))[0]
         return float(column), float(row), self.scale_px * sine / spread
 

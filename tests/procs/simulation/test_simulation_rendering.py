@@ -113,6 +113,8 @@ def test_robots_at_the_camera_or_far_away_can_be_drawn() -> None:
     robots = [(0.1, 0.0, CYAN), (0.0, 0.0, CYAN), (1e4, 0.0, MAGENTA)]
     renderer().render(Scene(Pose(0.0, 0.0, 0.0), robots, (0.0, 0.0, 0.11)))
     renderer().render(Scene(Pose(0.0, 0.0, 0.0), [], (0.3, 0.0, 5.0)))
+    for beside_m in (0.0, 0.05, 0.1):
+        renderer().render(Scene(Pose(0.0, 0.0, 0.0), [], (beside_m, 0.0, MIRROR.height_m)))
 
 
 def test_noise_is_as_strong_as_set_and_differs_by_frame() -> None:

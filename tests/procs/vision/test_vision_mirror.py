@@ -85,3 +85,13 @@ def test_sphere_straight_above_the_viewpoint_is_not_shown(height_m: float) -> No
     """Such a sphere fills everything outside a circle of the picture, so its radius is negative."""
     for away_m in (0.01, 0.05, 0.1):
         assert not Mirror().shows_all(*Mirror().sphere((away_m, 0.0, height_m), 0.11))
+
+
+@pytest.mark.parametrize("beside_m", [0.0, 0.05, 0.1])
+def test_sphere_around_the_viewpoint_hides_everything(beside_m: float) -> None:
+    """As a ball on the top of a robot that is 0.64 m high."""
+    mirror = Mirror()
+    column, row, radius_px = mirror.sphere((beside_m, 0.0, mirror.height_m), 0.11)
+    assert radius_px > 100 * mirror.size_px
+    assert math.hypot(column - mirror.centre_px, row - mirror.centre_px) < 1.001 * radius_px
+    assert not mirror.shows_all(column, row, radius_px)
