@@ -9,8 +9,8 @@ from procs.vision.colours import Picture
 def central_part(frame: Picture, aspect: float) -> Picture:
     """Returns the largest central part of a frame whose width is `aspect` times its height."""
     height_px, width_px = frame.shape[:2]
-    wanted_width_px = min(width_px, round(height_px * aspect))
-    wanted_height_px = min(height_px, round(width_px / aspect))
+    wanted_width_px = max(1, min(width_px, round(height_px * aspect)))
+    wanted_height_px = max(1, min(height_px, round(width_px / aspect)))
     top, left = (height_px - wanted_height_px) // 2, (width_px - wanted_width_px) // 2
     return frame[top : top + wanted_height_px, left : left + wanted_width_px]
 

@@ -90,6 +90,14 @@ def test_size_and_channels_follow_the_settings(film: Path) -> None:
     assert (frame.width_px, frame.height_px, frame.channels, frame.encoding) == (32, 24, 1, "gray8")
 
 
+@pytest.mark.parametrize(("width_px", "height_px"), [(1, 1000), (1000, 1)])
+def test_frame_may_be_as_narrow_as_a_pixel(film: Path, width_px: int, height_px: int) -> None:
+    camera = bench(film, width_px=width_px, height_px=height_px)
+    camera.iterate()
+    frame = camera.port("image").sent[-1]
+    assert (frame.width_px, frame.height_px) == (width_px, height_px)
+
+
 def test_new_source_during_a_run_begins_at_the_tick(film: Path, tmp_path: Path) -> None:
     camera = bench(film)
     assert shades_of(camera, 3) == [0, 1, 2]
