@@ -111,7 +111,7 @@ class PhysicsSettings(_Settings):
     kicker: KickerSettings = KickerSettings()
     contacts: ContactSettings = ContactSettings()
     battery: BatterySettings = BatterySettings()
-    step_s: Annotated[float, Field(gt=0.0, le=0.005)] = 0.005
+    step_s: Annotated[float, Field(ge=0.0001, le=0.005)] = 0.005
     """Longest step of the integration; a tick is cut into equal steps no longer than this. With a small
     `full_slip_m_s`, much traction or wheels far out, the force of a wheel would oscillate with its slip, and a small
     ball would get through nets; steps are then shorter."""

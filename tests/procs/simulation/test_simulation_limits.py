@@ -123,6 +123,10 @@ def test_robot_reaches_its_velocity_whatever_its_grip(
             "world/simulator.physics.handling.centring_s=1e-300",
             "'physics.handling.centring_s' is 1e-300; it should be greater than or equal to 0.01",
         ),
+        (
+            "world/simulator.physics.step_s=1e-12",
+            "'physics.step_s' is 1e-12; it should be greater than or equal to 0.0001",
+        ),
         ("world/simulator.period_s=0.02", "no setting 'period_s'"),
         ("shared.field.goal_height_m=0.1", "no ball of 0.22 m goes into a goal with a goal_height_m of 0.1 m"),
         ("shared.field.goal_depth_m=0.2", "no ball of 0.22 m goes into a goal with a goal_depth_m of 0.2 m"),
