@@ -76,7 +76,7 @@ class Ball:
             # The step ends below the floor, where the ball is faster than it was at the floor.
             rebound_m_s = min(landing_m_s, -self.vz_m_s * (self._bounce if bounce is None else bounce))
             self._bounce_off(floor_m, rebound_m_s, least_m_s=gained_m_s)
-        self._shape.filter = ball_filter(self.z_m >= self._robot_height_m, self.z_m > self._goal_height_m)
+        self._meet_what_is_as_high()
         return landed
 
     def rub(self, duration_s: float, vx_m_s: float, vy_m_s: float, omega_rad_s: float) -> None:
@@ -94,6 +94,7 @@ class Ball:
         self.body.velocity = (vx_m_s, vy_m_s)
         if not self.z_m and vz_m_s < 0.0:
             self._bounce_off(0.0, -self._bounce * vz_m_s)
+        self._meet_what_is_as_high()
 
     def put(self, x_m: float, y_m: float) -> None:
         """Lays the ball down at rest."""
@@ -103,6 +104,9 @@ class Ball:
         self.body.velocity = (0.0, 0.0)
         self.body.angular_velocity = 0.0
         self.friction.roll(0.0, 0.0)
+
+    def _meet_what_is_as_high(self) -> None:
+        self._shape.filter = ball_filter(self.z_m >= self._robot_height_m, self.z_m > self._goal_height_m)
 
     def _bounce_off(self, floor_m: float, rebound_m_s: float, least_m_s: float = 0.0) -> None:
         """Sends the ball, which has reached a floor, up again; one that is not faster than `least_m_s` stays there."""

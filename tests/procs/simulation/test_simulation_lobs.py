@@ -89,3 +89,12 @@ def test_ball_that_bounces_to_the_last_comes_to_rest(bounce: float) -> None:
     world.throw_ball(0.0001, (1.0, 0.0, 0.0))
     run(world, 150)
     assert (world.ball.z_m, world.ball.speed_m_s) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(("height_m", "passes"), [(0.3, False), (0.7, True)])
+def test_ball_thrown_over_a_robot_beside_it_passes(height_m: float, passes: bool) -> None:
+    world = world_of()
+    world.place_ball(-AWAY_M - 0.03, 0.0)
+    world.throw_ball(height_m, (10.0, 0.0, 2.0))
+    run(world, 3)
+    assert (world.ball.body.position.x > 0.5) is passes
