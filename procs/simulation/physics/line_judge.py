@@ -12,13 +12,12 @@ class LineJudge:
         self._field = field
         self._radius_m = ball_radius_m
 
-    def judge(self, x_m: float, y_m: float, z_m: float = 0.0) -> Kind | None:
-        """Returns the event of a ball that is now here, its lowest point `z_m` high: a goal, out, or None."""
+    def judge(self, x_m: float, y_m: float, under_bar: bool) -> Kind | None:
+        """Returns the event of a ball that is now here: a goal, if it has come under a bar, out, or None."""
         was_in_field = self.ball_in_field
         self.ball_in_field = self._field.in_field(x_m, y_m, self._radius_m)
         if self.ball_in_field or not was_in_field:
             return None
-        under_bar = z_m + 2 * self._radius_m <= self._field.goal_height_m
         if under_bar and any(self._field.in_goal(x_m, y_m, side, self._radius_m) for side in SIDES):
             return Kind.GOAL
         return Kind.OUT_SIDE if abs(y_m) > self._field.half_width_m + self._radius_m else Kind.OUT_END

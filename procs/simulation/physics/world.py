@@ -241,7 +241,7 @@ class World:
             speed_m_s = math.hypot(vx_m_s, vy_m_s)
             touched |= {robot: Event(Kind.TOUCH, robot, "", x_m, y_m, speed_m_s) for robot in touching}
             self.last_touch = touching.pop() if len(touching) == 1 else min(touching, key=self._distance_to_ball)
-        call = self._judge.judge(*states[0][:2], self.ball.z_m)
+        call = self._judge.judge(*states[0][:2], self._bar.over_ball)
         if call is not None:
             events.append(self._ball_event(call, self.last_touch))
         return states

@@ -8,6 +8,7 @@ import pytest
 from procs.model.ball import BALL, BallModel
 from procs.model.events import Event, Kind
 from procs.model.robot import ROBOT
+from procs.simulation.physics.kick_mechanism import KickerCommand
 from procs.simulation.physics.start_places import Pose
 from procs.simulation.physics.world import World
 
@@ -98,3 +99,12 @@ def test_ball_thrown_over_a_robot_beside_it_passes(height_m: float, passes: bool
     world.throw_ball(height_m, (10.0, 0.0, 2.0))
     run(world, 3)
     assert (world.ball.body.position.x > 0.5) is passes
+
+
+@pytest.mark.parametrize(("x_m", "kind"), [(10.1, Kind.GOAL), (9.8, Kind.GOAL), (9.0, Kind.OUT_END)])
+def test_lob_that_still_rises_under_the_bar_is_a_goal(x_m: float, kind: Kind) -> None:
+    """Behind the line it may be higher than the bar is."""
+    world = World(["cyan1"], np.random.default_rng(1), starts={"cyan1": Pose(x_m, 0.3, 0.0)})
+    world.ball.put(x_m + ROBOT.held_ball_m(BALL), 0.3)
+    world.kickers["cyan1"].command(KickerCommand(1, 6.0, dribble=False, elevation_rad=0.8), 0)
+    assert [event.kind for event in run(world, 15) if event.kind in (Kind.GOAL, Kind.OUT_END)] == [kind]
