@@ -74,7 +74,7 @@ class Ball:
         landed = self.z_m <= floor_m
         if landed:
             # The step ends below the floor, where the ball is faster than it was at the floor.
-            rebound_m_s = min(landing_m_s, -self.vz_m_s * (self._bounce if bounce is None else bounce))
+            rebound_m_s = landing_m_s * (self._bounce if bounce is None else bounce)
             self._bounce_off(floor_m, rebound_m_s, least_m_s=gained_m_s)
         self._meet_what_is_as_high()
         return landed

@@ -82,7 +82,22 @@ def test_bouncing_ball_rises_no_higher_than_before(bounce: float) -> None:
         assert world.ball.z_m <= 1.0
 
 
-@pytest.mark.parametrize("bounce", [0.0, 0.6, 1.0])
+@pytest.mark.parametrize("bounce", [0.6, 0.9, 0.99])
+def test_each_bounce_takes_its_share_of_the_speed(bounce: float) -> None:
+    world = World([], np.random.default_rng(1), ball=BallModel(bounce=bounce))
+    world.place_ball(0.0, 0.0)
+    world.throw_ball(1.0, (0.0, 0.0, 0.0))
+    heights_m = [0.0]
+    while len(heights_m) < 5:
+        falling = world.ball.vz_m_s < 0.0
+        world.advance(5_000)
+        if falling and world.ball.vz_m_s >= 0.0:
+            heights_m.append(0.0)
+        heights_m[-1] = max(heights_m[-1], world.ball.z_m)
+    assert heights_m[:3] == pytest.approx([1.0, bounce**2, bounce**4], abs=0.001)
+
+
+@pytest.mark.parametrize("bounce", [0.0, 0.6, 0.9, 1.0])
 def test_ball_that_bounces_to_the_last_comes_to_rest(bounce: float) -> None:
     """The ground brakes it once it stays down, however small the least rebound is."""
     world = World([], np.random.default_rng(1), ball=BallModel(bounce=bounce, least_rebound_m_s=0.0))
