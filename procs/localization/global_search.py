@@ -15,6 +15,8 @@ from procs.model.frames import Floats
 
 _CELL_M = 0.1  # of the table
 _STEP = 4  # cells from one position of the grid to the next
+_LEAST_BEYOND_M = 0.4  # so far beyond the lines there are positions, ...
+_BESIDE_WALL_M = 0.6  # ... and up to this distance from a wall further away, as far as robots see lines
 _ROBUST_M = 0.35  # distance from a line at which a point scores half: the nearest position of the grid still scores
 
 
@@ -23,8 +25,9 @@ class GlobalSearch:
 
     def __init__(self, lines: LineMap, reach_m: float) -> None:
         field = lines.field
-        half_x = round((field.half_length_m + 0.4) / _CELL_M)
-        half_y = round((field.half_width_m + 0.4) / _CELL_M)
+        beyond_m = max(_LEAST_BEYOND_M, min(field.border_m, reach_m) - _BESIDE_WALL_M)
+        half_x = round((field.half_length_m + beyond_m) / _CELL_M)
+        half_y = round((field.half_width_m + beyond_m) / _CELL_M)
         pad = int(reach_m / _CELL_M) + 2
         columns = np.arange(-half_x - pad, half_x + pad + 1)
         rows = np.arange(-half_y - pad, half_y + pad + 1)

@@ -8,6 +8,7 @@ import pytest
 from fwk.testing import Bench, settings_in
 from procs.localization.hypotheses import Hypotheses
 from procs.localization.localization import Localization
+from procs.model.field import Field
 from tests.procs.localization.localization_parts import (
     FakeRobot,
     frames,
@@ -42,6 +43,13 @@ def test_repeated_kidnapping_does_not_bias_the_compass() -> None:
         robot.pose[2] = heading_rad + 0.5
         assert until_localized(bench, robot, 8.0) < math.inf
         assert abs(bench.component._localizer.compass_offset_rad - robot.drift_rad) < 0.15
+
+
+@pytest.mark.parametrize("place_m", [(13.2, 4.0), (-13.2, -1.0), (0.0, 9.2), (0.0, -9.2)])
+def test_robot_far_outside_the_lines_finds_its_place(place_m: tuple[float, float]) -> None:
+    robot = FakeRobot(seed=2)
+    robot.pose = np.array((*place_m, 1.0))
+    assert until_localized(Bench(Localization, field=Field(border_m=3.0)), robot, 5.0) < math.inf
 
 
 def test_never_localized_without_a_compass_or_without_lines() -> None:
