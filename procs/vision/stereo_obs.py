@@ -12,6 +12,7 @@ from procs.vision.stereo_finder import StereoFinder
 from procs.vision.stereo_rig import StereoRig
 
 _ABOVE_BALL_M = 0.03
+_LEAST_BAND_M = 0.25  # of heights that are looked at, above a large ball
 _LOWEST_M, _LOWEST = 0.28, 0.55  # lower edge of what is looked at, and as a share of the height of low robots
 
 
@@ -60,9 +61,11 @@ class StereoObs(Component):
 
     def config_changed(self) -> None:
         config = self.config
+        lowest_m = max(2 * config.ball.radius_m + _ABOVE_BALL_M, min(_LOWEST_M, _LOWEST * config.robot.height_m))
         self._finder = StereoFinder(
             config.rig,
-            lowest_m=max(2 * config.ball.radius_m + _ABOVE_BALL_M, min(_LOWEST_M, _LOWEST * config.robot.height_m)),
+            lowest_m=lowest_m,
+            highest_m=max(StereoFinder.highest_m, lowest_m + _LEAST_BAND_M),
             farthest_m=config.farthest_m,
             radius_m=config.robot.radius_m,
             deviation_px=config.deviation_px,

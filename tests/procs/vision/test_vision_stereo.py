@@ -11,7 +11,7 @@ from fwk.model.errors import PlanError
 from fwk.testing import Bench, MemorySystem, launch_plan, system_of
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
-from procs.model.ball import BALL
+from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
 from procs.model.robot import RobotModel
 from procs.simulation.rendering.renderer import Pose
@@ -149,6 +149,10 @@ def test_heights_looked_at_fit_low_robots_and_large_balls() -> None:
     bench.iterate()
     assert len(bench.port("stereo_obstacles").sent[-1].obstacles) == 1
     assert Bench(StereoObs, ball={"radius_m": 0.2}).component._finder.lowest_m > 0.4
+    high, large = RobotModel(height_m=0.8), BallModel(radius_m=0.29)
+    bench = Bench(StereoObs, robot=high.model_dump(), ball=large.model_dump())
+    frame = StereoRenderer(StereoRig(), Field(), Bodies.of(high, large)).render(Pose(0.0, 0.0, 0.0), [(2.0, 0.0)])
+    assert len(bench.component._finder.find(frame)) == 1
 
 
 @pytest.mark.parametrize(
