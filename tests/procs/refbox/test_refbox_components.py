@@ -186,11 +186,11 @@ def test_silent_name_server_holds_nothing_up(refbox: socket.socket, monkeypatch:
     """The lookup of a name takes as long as the name server likes; ticks go on meanwhile."""
     answered, looked_up, ask = threading.Event(), threading.Event(), socket.getaddrinfo
 
-    def slow(host: str, *arguments: Any, flags: int = 0, **more: Any) -> Any:
-        if flags & socket.AI_NUMERICHOST:
-            return ask(host, *arguments, flags=flags, **more)
+    def slow(host: str, port: int, **how: Any) -> Any:
+        if how["flags"] & socket.AI_NUMERICHOST:
+            return ask(host, port, **how)
         answered.wait(10.0)
-        found = ask("127.0.0.1", *arguments, **more)
+        found = ask("127.0.0.1", port, **how)
         looked_up.set()
         return found
 
