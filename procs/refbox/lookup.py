@@ -14,7 +14,7 @@ class Lookup:
     def __init__(self, host: str, port: int) -> None:
         self.family = socket.AF_INET
         self.address: Any = None
-        """As sockets take it; None until the host is found."""
+        """Address for `socket.connect`; None until the host is found."""
         self.reason = ""
         """Why the host was not found."""
         self._host, self._port = host, port

@@ -8,8 +8,8 @@ from procs.model.teams import Ends, Team, team_number
 from procs.referee.sight import Sight
 
 _LOST_S = 0.25  # a robot that does not touch the ball for longer does not carry it any more
-_HAS_S = 0.5  # a robot that carries the ball for so long has won it, and did not only turn it
 _FREE_M = 0.5  # nor does a robot from which the ball has rolled so far
+_HAS_S = 0.5  # a robot that carries the ball for so long has won it, and did not only turn it
 
 
 class Touches:
@@ -27,7 +27,7 @@ class Touches:
         self.again = False
         """The taker has touched the ball again after a free roll, before another robot did."""
         self.double = False
-        """It had mates on the field when it did so."""
+        """The taker had mates on the field at that second touch."""
         self.late = Team.NONE
         """Team that did not take its set piece in time: it plays on, but a goal still needs a second robot."""
         self.intercepted = False

@@ -63,7 +63,7 @@ def test_posts_before_the_own_area_are_apart(state: State, whose: Whose, spot: P
 
 
 def test_place_that_the_taker_tells_moves_the_other_posts() -> None:
-    """Whoever hears of it goes to the other side, and not to the place of the receiver."""
+    """A mate that hears of the place goes to the other side, and not to the receiver."""
     game, supporter = kick_off(Whose.OURS), robot("magenta3", -2.0, 2.0, role=SUPPORTER)
     places = [set_pieces.receiver_place(variant, game, FIELD) for variant in set_pieces.BOOK[State.KICK_OFF]]
     for place in places:
