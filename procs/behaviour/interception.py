@@ -88,7 +88,8 @@ def _mouth_at(ball: Ball, time_s: float, way_rad: float, bodies: Bodies) -> Poin
 
 def _beside(view: View, way_rad: float, heading_rad: float) -> Stand | None:
     """Returns the nearest place on the ball's way if the robot nearly stands there and the ball is yet to come."""
-    ball, place, contact_m = view.ball, view.own.place, view.bodies.held_ball_m
+    ball, contact_m = view.ball, view.bodies.held_ball_m
+    place = ballistics.carried(view.own.place, view.own.velocity_m_s)
     to_x_m, to_y_m = place.x_m - ball.place.x_m, place.y_m - ball.place.y_m
     along_m = to_x_m * math.cos(way_rad) + to_y_m * math.sin(way_rad)
     aside_m = abs(to_y_m * math.cos(way_rad) - to_x_m * math.sin(way_rad))

@@ -26,8 +26,9 @@ from procs.model.field import Field
 from procs.model.frames import Floats
 from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
-from procs.world_model.ball_modes import Contact, Mode
+from procs.world_model.ball_modes import NO_CONTACT, Contact, Mode
 from procs.world_model.contact import Robots
+from procs.world_model.crossbar import Crossbars
 from procs.world_model.flight import Flight
 from procs.world_model.seen import Seen
 
@@ -64,6 +65,7 @@ class Walls:
     """Place of the posts along the field."""
     goal_half_width_m: float
     goal_height_m: float
+    bars: Crossbars
 
     @classmethod
     def of(cls, field: Field, ball: BallModel) -> "Walls":
@@ -75,6 +77,7 @@ class Walls:
             goal_x_m=field.half_length_m,
             goal_half_width_m=field.goal_width_m / 2,
             goal_height_m=field.goal_height_m,
+            bars=Crossbars.of(field, ball),
         )
 
     def behind_net(self, ball: BallFilter, radius_m: float) -> bool:
@@ -198,13 +201,15 @@ class BallTrack:
             walls.contain(self.filter, nets=not (behind or over))
 
     def _contact(self, duration_s: float, step: Step) -> Contact:
-        """Returns the effect of robots, posts and walls on a known ball in a step that ends now."""
+        """Returns the effect of robots, posts, bars and walls on a known ball in a step that ends now."""
         assert self.filter is not None
-        robots = step.robots
-        if robots is None:
-            return Contact(probability=step.contact)
-        before_s = (step.end_us - self.time_us) / US_PER_S + duration_s
-        found = robots.contact(self.filter, duration_s, before_s, self.flight)
+        found, robots, walls = NO_CONTACT, step.robots, step.walls
+        if robots is not None:
+            before_s = (step.end_us - self.time_us) / US_PER_S + duration_s
+            found = robots.contact(self.filter, duration_s, before_s, self.flight)
+        if walls is not None and self.flight is not None:
+            bar = walls.bars.contact(self.filter, self.flight, duration_s)
+            found = max(found, bar._replace(probability=found.probability))
         return found._replace(probability=max(found.probability, step.contact))
 
     def see(self, sighting: Sighting, others: Sequence[Sighting] = ()) -> None:

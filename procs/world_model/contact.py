@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from procs.model.normal import normal_cdf
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_modes import NO_CONTACT, Contact
 from procs.world_model.flight import Flight
@@ -59,7 +60,7 @@ class Robots:
             spread_m = math.sqrt(ball_m2 + robot_m2 + _HULL_SD_M**2)
             gap_m = way_m - self.touch_m - _HULL_M
             reaches_s = min(max(0.0, gap_m), duration_s * closing_m_s) / closing_m_s if closing_m_s > 0.0 else 0.0
-            reaches = _normal((duration_s * max(closing_m_s, 0.0) - gap_m) / spread_m)
+            reaches = normal_cdf((duration_s * max(closing_m_s, 0.0) - gap_m) / spread_m)
             probability = max(probability, reaches * self._is_low(flight, reaches_s))
             if closing_m_s > _RAMS_M_S:
                 found = self._hit(away, past, closing_m_s, duration_s, spread_m)
@@ -95,7 +96,7 @@ class Robots:
         aside_m2 = max(0.0, way_m * way_m - ahead_m * ahead_m)
         driven_m = min(ahead_m, duration_s * speed_m_s)
         nearest_m = math.sqrt(aside_m2 + (ahead_m - driven_m) ** 2)
-        inside = _normal((self.touch_m - _DENT_M - nearest_m) / spread_m)
+        inside = normal_cdf((self.touch_m - _DENT_M - nearest_m) / spread_m)
         touches_m = ahead_m - math.sqrt(max(0.0, self.touch_m**2 - aside_m2))
         after_s = min(max(0.0, touches_m), driven_m) / speed_m_s
         normal_x_m, normal_y_m = away[0] + past[0] * after_s, away[1] + past[1] * after_s
@@ -103,8 +104,3 @@ class Robots:
         turn_1_s = (1.0 + _BOUNCE) * towards_m2_s / max(normal_x_m**2 + normal_y_m**2, 1e-12)
         probability = min(1.0, closing_m_s - _RAMS_M_S) * inside
         return Contact(probability, 0.0, turn_1_s * normal_x_m, turn_1_s * normal_y_m, after_s)
-
-
-def _normal(deviations: float) -> float:
-    """Returns the probability that a value of the standard normal distribution is below `deviations`."""
-    return 0.5 * math.erfc(-deviations / math.sqrt(2.0))

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from procs.model.ball import BallModel
+from procs.model.normal import normal_cdf
 
 _GRAVITY_M_S2 = 9.81
 _SEEN_M = 0.03  # deviation of a height that follows from the ball's size
@@ -80,7 +81,7 @@ class Flight:
     def probably_below(self, height_m: float, duration_s: float) -> float:
         """Returns the probability that the ball will be lower than that after a step in the air."""
         then = self._in_the_air(duration_s)
-        return 0.5 * math.erfc((then.height_m - height_m) / math.sqrt(2.0 * then.height_m2))
+        return normal_cdf((height_m - then.height_m) / math.sqrt(then.height_m2))
 
     def _in_the_air(self, duration_s: float) -> "Flight":
         fallen_m_s = _GRAVITY_M_S2 * duration_s

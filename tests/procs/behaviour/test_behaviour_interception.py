@@ -31,6 +31,14 @@ def test_fast_ball_is_awaited_where_the_robot_stands() -> None:
     assert stand.place == pytest.approx((0.0, 0.2), abs=0.01)
 
 
+def test_fast_ball_is_awaited_where_the_robot_can_stop() -> None:
+    """A robot that drove across the ball's way braked only on the way itself, and the ball bounced off beside it."""
+    own = robot("cyan2", 0.0, 0.6)._replace(velocity_m_s=Point(0.4, -1.6))
+    stand = Interception().stand(view(own, ball(5.0, 0.2, -3.5, 0.0)), 0.05)
+    assert stand is not None
+    assert stand.place == pytest.approx((0.1, 0.2), abs=0.01)
+
+
 def test_place_stays_while_the_measured_velocity_is_noisy() -> None:
     rng, plan, places = np.random.default_rng(1), Interception(), []
     for tick in range(16):
