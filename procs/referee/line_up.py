@@ -14,12 +14,13 @@ def misplaced_robots(restart: Restart, sight: Sight, ends: Ends, field: Field) -
     return misplaced(restart._replace(spot=sight.ball), sight.robots, ends, field, keeper)
 
 
-def too_few_robots(sight: Sight, cards: Cards, least_robots: int) -> bool:
-    """Returns whether a team has too few robots and may get more; red cards leave none to wait for.
+def incomplete_team(sight: Sight, cards: Cards, least_robots: int) -> Team:
+    """Returns a team that has too few robots and may get more, or NONE; red cards leave none to wait for.
 
     A team without any robot is waited for if one of them comes back.
     """
-    return any(_waits(team, len(sight.team(team)), cards, least_robots) for team in (Team.CYAN, Team.MAGENTA))
+    teams = (Team.CYAN, Team.MAGENTA)
+    return next((team for team in teams if _waits(team, len(sight.team(team)), cards, least_robots)), Team.NONE)
 
 
 def _waits(team: Team, robots: int, cards: Cards, least_robots: int) -> bool:

@@ -58,6 +58,7 @@ class Referee(Component):
         self._before_us = -1
         self._names = Names(self.config.players)
         self._has_grown = False  # the history, since it was written
+        self._awaited = Team.NONE
         self._record(Call(self._whistle.state, self._whistle.team))
 
     def loop(self) -> None:
@@ -70,6 +71,7 @@ class Referee(Component):
             whistle.step(passed_s, sight)
             for call in whistle.calls:
                 self._record(call)
+            self._tell_awaited(sight)
         self._obey(sight)
         self._write_state()
         self._write_history()
@@ -111,6 +113,15 @@ class Referee(Component):
             for call in self._whistle.calls:
                 self._record(call)
             command.done()
+
+    def _tell_awaited(self, sight: Sight) -> None:
+        """Logs for which team a set piece waits, once each time."""
+        awaited, least = self._whistle.awaited, self.config.least_robots
+        if awaited and awaited is not self._awaited:
+            there = len(sight.without(self._whistle.cards.sent_off).team(awaited))
+            team = awaited.name.lower()
+            self.log.warning(f"the game waits for robots of {team}: {there} on the field, and least_robots is {least}")
+        self._awaited = awaited
 
     def _record(self, call: Call) -> None:
         """Adds a decision to the history and logs it."""

@@ -18,7 +18,7 @@ from procs.referee.fouls.dribbling import dribbling
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.fouls.pushing import collision
 from procs.referee.fouls.set_piece import breach
-from procs.referee.line_up import misplaced_robots, too_few_robots
+from procs.referee.line_up import incomplete_team, misplaced_robots
 from procs.referee.reasons import Reason
 from procs.referee.restarts import Restart
 from procs.referee.rules import Rules
@@ -49,6 +49,8 @@ class Whistle:
         self.cards = Cards()
         self.shootout: Shootout | None = None
         self.calls: list[Call] = []
+        self.awaited = Team.NONE
+        """Team with too few robots, for which the set piece waits."""
         self._ball = BallPlacing(spot)
         self._begun = False  # whether a set piece of the half was started
         self._changing_ends = False
@@ -95,7 +97,7 @@ class Whistle:
 
     def step(self, duration_s: float, sight: Sight) -> None:
         """Runs one tick of `duration_s`."""
-        self.calls = []
+        self.calls, self.awaited = [], Team.NONE
         self.time_in_state_s += duration_s
         away = self.cards.sent_off
         self.cards.pass_time(duration_s)
@@ -262,7 +264,10 @@ class Whistle:
         rules = self.rules
         stoppage_s = rules.kick_off_stoppage_s if self.state is State.KICK_OFF else rules.stoppage_s
         waits = self.held or self._starting or self.time_in_state_s < stoppage_s
-        if not self.stopped or waits or too_few_robots(sight, self.cards, rules.least_robots):
+        if not self.stopped or waits:
+            return
+        self.awaited = incomplete_team(sight, self.cards, rules.least_robots)
+        if self.awaited:
             return
         longest_s = rules.ends_s if self._changing_ends else rules.positions_s
         had_time = self.time_in_state_s >= stoppage_s + longest_s and self._ball.laid_s >= longest_s

@@ -338,3 +338,26 @@ def test_second_yellow_card_by_hand_is_double() -> None:
         assert state(bench).sent_off == expected
     kinds = [event.card for event in history(bench) if event.card]
     assert kinds == [game_event_t.YELLOW, game_event_t.DOUBLE_YELLOW, game_event_t.YELLOW]
+
+
+def test_awaited_team_is_named_once_each_time() -> None:
+    """A match of one against one with `least_robots: 2` never began, and nothing told why."""
+    bench = Bench(Referee, "world/referee", kick_off_stoppage_s=0.5, positions_s=0.0, least_robots=2)
+    robots = [true_robot_t() for _ in range(3)]
+    for robot, name in zip(robots, ("cyan2", "cyan3", "magenta2"), strict=True):
+        robot.name = name
+
+    def told() -> list[str]:
+        return [each.text for each in bench.logged if "waits" in each.text]
+
+    bench.port("ground_truth").put(robots=robots)
+    for _ in range(30):
+        bench.port("match_events").put()
+        bench.iterate()
+    assert told() == ["the game waits for robots of magenta: 1 on the field, and least_robots is 2"]
+    assert state(bench).stopped
+    bench.port("referee_command").put(name="freekick", team="cyan")
+    for _ in range(90):
+        bench.port("match_events").put()
+        bench.iterate()
+    assert len(told()) == 2
