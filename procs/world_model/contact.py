@@ -63,7 +63,7 @@ class Robots:
             reaches = normal_cdf((duration_s * max(closing_m_s, 0.0) - gap_m) / spread_m)
             probability = max(probability, reaches * self._is_low(flight, reaches_s))
             if closing_m_s > _RAMS_M_S:
-                found = self._hit(away, past, closing_m_s, duration_s, spread_m)
+                found = self._hit(away, past, closing_m_s, duration_s, spread_m, flies=flight is not None)
                 hit = max(hit, found._replace(hit=found.hit * self._is_low(flight, found.after_s)))
         return hit._replace(probability=probability)
 
@@ -81,8 +81,12 @@ class Robots:
         closing_m_s: float,
         duration_s: float,
         spread_m: float,
+        flies: bool,
     ) -> Contact:
         """Returns the hit of a robot by a ball that approaches.
+
+        Whether a ball on the ground runs on is seen by how far inside the robot it would be. A ball in the air may rise
+        above the robot meanwhile: its way decides, in the step in which it touches.
 
         Args:
             away: from the robot to the ball, m.
@@ -90,17 +94,20 @@ class Robots:
             closing_m_s: part of that velocity towards the robot.
             duration_s: the step.
             spread_m: deviation of the distance between robot and ball.
+            flies: the ball is in the air.
         """
         way_m, speed_m_s = math.hypot(*away), math.hypot(*past)
         ahead_m = way_m * closing_m_s / speed_m_s  # on the ball's way, to the place that is nearest to the robot
         aside_m2 = max(0.0, way_m * way_m - ahead_m * ahead_m)
         driven_m = min(ahead_m, duration_s * speed_m_s)
-        nearest_m = math.sqrt(aside_m2 + (ahead_m - driven_m) ** 2)
-        inside = normal_cdf((self.touch_m - _DENT_M - nearest_m) / spread_m)
         touches_m = ahead_m - math.sqrt(max(0.0, self.touch_m**2 - aside_m2))
+        if flies:
+            inside_m = self.touch_m - math.sqrt(aside_m2) if 0.0 < touches_m <= driven_m else -math.inf
+        else:
+            inside_m = self.touch_m - _DENT_M - math.sqrt(aside_m2 + (ahead_m - driven_m) ** 2)
         after_s = min(max(0.0, touches_m), driven_m) / speed_m_s
         normal_x_m, normal_y_m = away[0] + past[0] * after_s, away[1] + past[1] * after_s
         towards_m2_s = max(0.0, -(past[0] * normal_x_m + past[1] * normal_y_m))
         turn_1_s = (1.0 + _BOUNCE) * towards_m2_s / max(normal_x_m**2 + normal_y_m**2, 1e-12)
-        probability = min(1.0, closing_m_s - _RAMS_M_S) * inside
+        probability = min(1.0, closing_m_s - _RAMS_M_S) * normal_cdf(inside_m / spread_m)
         return Contact(probability, 0.0, turn_1_s * normal_x_m, turn_1_s * normal_y_m, after_s)

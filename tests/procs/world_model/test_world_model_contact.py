@@ -146,6 +146,26 @@ def test_height_counts_where_the_ball_meets_the_robot(height_m: float, lift_m_s:
         assert probability > 0.8 if likely else probability < 0.1
 
 
+@pytest.mark.parametrize(
+    ("y_m", "height_m", "likely"),
+    [
+        pytest.param(0.2, 0.66, True, id="low"),
+        pytest.param(0.2, 0.85, False, id="over it"),
+        pytest.param(0.6, 0.66, False, id="beside it"),
+    ],
+)
+def test_rising_ball_is_hit_in_the_step_in_which_it_touches(y_m: float, height_m: float, likely: bool) -> None:
+    """A lob touched a robot low; at the end of the step it would have been above: beliefs flew on, for 10 m."""
+    flight, row = Flight(height_m, 4.0, 0.01**2, 0.0, 0.1**2), (0.45, y_m, 0.0, 0.0, ROBOT_M2)
+    found = robots(row).contact(ball(9.5), STEP_S / 2, STEP_S / 2, flight)
+    assert found.hit > 0.8 if likely else found.hit < 0.1
+
+
+def test_ball_above_a_robot_has_passed_or_met_it_before() -> None:
+    flight = Flight(0.75, 4.0, 0.05**2, 0.0, 0.1**2)
+    assert robots((0.2, 0.0, 0.0, 0.0, ROBOT_M2)).contact(ball(9.5), STEP_S, STEP_S, flight).hit == 0.0
+
+
 def test_deflected_ball_is_found_by_the_next_sighting() -> None:
     """The ball left a robot sideways; one frame suffices, where the model of a free ball needs two."""
     tracker = shot_at(robots((0.9, 0.1, 0.0, 0.0, ROBOT_M2)), 3)
