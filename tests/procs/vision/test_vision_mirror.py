@@ -89,7 +89,7 @@ def test_sphere_straight_above_the_viewpoint_is_not_shown(height_m: float) -> No
 
 @pytest.mark.parametrize("beside_m", [0.0, 0.05, 0.1])
 def test_sphere_around_the_viewpoint_hides_everything(beside_m: float) -> None:
-    """As a ball on the top of a robot that is 0.64 m high."""
+    """The middle of a ball on top of a robot 0.64 m high is level with the mirror's viewpoint."""
     mirror = Mirror()
     column, row, radius_px = mirror.sphere((beside_m, 0.0, mirror.height_m), 0.11)
     assert radius_px > 100 * mirror.size_px

@@ -63,7 +63,7 @@ def test_ball_that_does_not_cross_the_line_meets_no_bar(x_m: float, vx_m_s: floa
 
 @pytest.mark.parametrize(("lift_m_s", "comes_back"), [(5.7, True), (3.0, False)])
 def test_lob_at_the_bar_is_believed_to_come_back(lift_m_s: float, comes_back: bool) -> None:
-    """Nobody sees the ball; the belief of its kicker flew on into the net, metres from a ball that came back."""
+    """Its kicker believed a lob in the net that the bar had sent back, until a robot saw the ball."""
     tracker, walls = BallTracker(), Walls.of(Field(), BALL)
     tracker.advance(STEP_S, 2.0)
     tracker.hold("a", np.array((9.0, 0.3, 0.0, 0.0)), np.eye(4) * 1e-4)
