@@ -134,6 +134,16 @@ class Field(BaseModel):
         """Distance from the centre to the outer edge of a touch line, in metres."""
         return self.width_m / 2
 
+    @property
+    def goal_plane_m(self) -> float:
+        """Distance from the centre to the plane in which the posts and the bar of a goal stand, in metres."""
+        return self.half_length_m - self.line_width_m / 2
+
+    @property
+    def bar_top_m(self) -> float:
+        """Height of the upper side of the bars, in metres; the lower side is at `goal_height_m`."""
+        return self.goal_height_m + self.post_diameter_m
+
     def segments(self) -> list[Segment]:
         """Returns the middles of all straight lines."""
         inset_m = self.line_width_m / 2
@@ -180,7 +190,7 @@ class Field(BaseModel):
 
     def goal_posts(self, side: float) -> tuple[Point, Point]:
         """Returns the middles of the two posts, which stand on the goal line; negative y first."""
-        x_m = side * (self.half_length_m - self.line_width_m / 2)
+        x_m = side * self.goal_plane_m
         y_m = (self.goal_width_m + self.post_diameter_m) / 2
         return Point(x_m, -y_m), Point(x_m, y_m)
 

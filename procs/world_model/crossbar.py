@@ -30,8 +30,7 @@ class Crossbars:
     def of(cls, field: Field, ball: BallModel) -> "Crossbars":
         """Returns the bars of a field's goals, for a ball of that size."""
         low_m = field.goal_height_m - 2 * ball.radius_m
-        high_m = field.goal_height_m + field.post_diameter_m
-        return cls(field.half_length_m - field.line_width_m / 2, field.goal_width_m / 2, low_m, high_m)
+        return cls(field.goal_plane_m, field.goal_width_m / 2, low_m, field.bar_top_m)
 
     def contact(self, ball: BallFilter, flight: Flight, duration_s: float) -> Contact:
         """Returns the effect of a bar on a ball in the air in a step: it bounces back if it is as high as the bar."""

@@ -28,7 +28,7 @@ from procs.model.frames import Floats
 from procs.model.geometry import plausible
 from procs.model.robot import ABSENT, PLAYERS, ROBOT, TEAM_NUMBERS, Players, RobotModel, player_of
 from procs.model.units import US_PER_S
-from procs.world_model.ball_track import Sighting, Walls
+from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.contact import Robots
 from procs.world_model.kicks import Kicks
@@ -39,6 +39,7 @@ from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
 from procs.world_model.team import Mate, PlaceRow, Places, Team
 from procs.world_model.told import ball_of, held_by, mate_of, obstacles_of
+from procs.world_model.walls import Walls
 from procs.world_model.world_messages import fill_ball, fill_kick, fill_plan, fill_team_message, fill_world_model
 
 _STALE_S = 0.5  # older sightings of mates are not used, and older words of the own kicker

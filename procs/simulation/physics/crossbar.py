@@ -13,10 +13,10 @@ class Crossbar:
         """True if the ball was under the bar when it left the planes between the goals last, or was put down since."""
         self._bounce = bounce
         self._ball = ball
-        self._line_m = field.half_length_m - field.line_width_m / 2
+        self._line_m = field.goal_plane_m
         self._half_m = field.goal_width_m / 2
         self._low_m = field.goal_height_m
-        self._high_m = field.goal_height_m + field.post_diameter_m
+        self._high_m = field.bar_top_m
         self._before_m = 0.0
 
     def begin_at(self, x_m: float) -> None:

@@ -7,13 +7,13 @@ from procs.model.ball import BALL
 from procs.model.field import Field
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_modes import NO_CONTACT, Contact
-from procs.world_model.ball_track import Walls
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.crossbar import Crossbars
 from procs.world_model.flight import Flight
+from procs.world_model.walls import Walls
 
 STEP_S = 0.04
-LINE_M = Field().half_length_m - Field().line_width_m / 2
+LINE_M = Field().goal_plane_m
 
 
 def ball(x_m: float, y_m: float, vx_m_s: float) -> BallFilter:
