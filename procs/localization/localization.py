@@ -24,7 +24,7 @@ from procs.vision.calibration import MirrorConfig
 
 _FASTEST_M_S = 8.0  # no robot drives faster
 _SHORT_S = 0.1  # for so long the velocity of the last tick tells the motion well enough
-_USUAL = MirrorConfig(size_px=360, view_angle_deg=86.0).mirror()  # for which the expected errors are stated
+_USUAL = MirrorConfig().mirror()  # for which the expected errors are stated
 _AWAY_M = 2.0  # distance at which mirrors are compared
 
 

@@ -55,7 +55,6 @@ _SEEING: dict[str, type[Component]] = {
     "localization": Localization,
     "world_model": WorldModel,
 }
-_MIRROR = {"size_px": 360, "view_angle_deg": 86.0}  # as in msl-percepts.yaml
 _RADIO = {"messages": "{team}*/team_message", "inboxes": "{team}*/team_inbox"}
 _Number = Annotated[FiniteFloat, Strict()]
 
@@ -200,7 +199,7 @@ def system_of(scenario: Scenario) -> MemorySystem:
     channels, turns = {}, {}
     for name, part in components.items():
         if part is Percepts:
-            settings[name], turns[name] = {"realism": scenario.realism, "mirror": _MIRROR}, (2, 0)
+            settings[name], turns[name] = {"realism": scenario.realism}, (2, 0)
         if part is Radio:
             team = name.removeprefix("team_").removesuffix("/radio")
             settings[name] = {"realism": scenario.realism}

@@ -14,12 +14,12 @@ from procs.vision.mirror import Mirror
 class MirrorConfig(Config):
     """Calibration of the mirror, which the camera and both detectors of a robot share."""
 
-    size_px: int = Field(default=400, ge=64, le=1600)
+    size_px: int = Field(default=430, ge=64, le=1600)
     """Height and width of the picture."""
     height_m: float = Field(default=0.75, gt=0.3, le=2.0)
     """Effective viewpoint of the mirror above the ground, above any ball. Rule book of 2016: robots up to 0.80 m."""
-    view_angle_deg: float = Field(default=92.0, gt=45.0, lt=150.0)
-    """Angle from straight down that the picture's edge sees; 90 is the horizon."""
+    view_angle_deg: float = Field(default=96.0, gt=45.0, lt=150.0)
+    """Angle from straight down that the picture's edge sees; 90 is the horizon, above which lobs fly."""
 
     def fitted(self, frame: Picture) -> Picture:
         """Returns the frame as the calibration describes it: its central square, `size_px` wide.

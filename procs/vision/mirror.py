@@ -24,11 +24,11 @@ _LEAST = 1e-9  # instead of 0 as a divisor
 class Mirror:
     """Calibration of a camera with its mirror."""
 
-    size_px: int = 400
+    size_px: int = 430
     """Height and width of the picture."""
     height_m: float = 0.75
     """Viewpoint above the ground."""
-    view_angle_rad: float = math.radians(92.0)
+    view_angle_rad: float = math.radians(96.0)
     """Angle from straight down that the picture's edge sees; beyond 90 degrees is above the horizon."""
     roll_rad: float = 0.0
     """Tilt about the robot's x axis."""

@@ -55,13 +55,14 @@ def test_ball_and_lines_lie_over_their_pixels(width_px: int, height_px: int) -> 
 def test_the_calibration_comes_from_the_settings() -> None:
     lines = line_points_t()
     lines.n, lines.x_m, lines.y_m = 1, [0.0], [2.0]
+    size_px = MirrorConfig().size_px
     low = {("cyan1/omni_ball", "mirror.height_m"): 0.5, ("cyan2/omni_ball", "mirror.height_m"): 0.9}
     scene = Scene()
-    messages = {"cyan1/image": frame(400, 400), "cyan1/line_points": lines}
+    messages = {"cyan1/image": frame(size_px, size_px), "cyan1/line_points": lines}
     MatchView().sight("cyan1/image", Newest(messages, low), scene)
     (point,) = json.loads(scene.encoded())["shapes"]
     away_px = MirrorConfig(height_m=0.5).mirror().radius_px(2.0)
-    assert 199.5 - point["x"] == pytest.approx(away_px, abs=1.0)
+    assert (size_px - 1) / 2 - point["x"] == pytest.approx(away_px, abs=1.0)
     assert abs(away_px - MirrorConfig().mirror().radius_px(2.0)) > 5.0
 
 

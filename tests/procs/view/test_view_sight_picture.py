@@ -57,7 +57,7 @@ def test_command_draws_the_camera_of_a_match(tmp_path: Path, monkeypatch: pytest
     sight_picture.main()
     picture = cv2.imread(str(file))
     assert picture is not None
-    assert picture.shape == (720, 720, 3)
+    assert picture.shape == (2 * MIRROR.size_px, 2 * MIRROR.size_px, 3)
     assert (picture == LINE).all(axis=2).sum() > 100
     monkeypatch.setattr("sys.argv", [*words[:-4], "--robot", "cyan9", "--time", "0.1"])
     with pytest.raises(SystemExit, match="no camera of cyan9"):

@@ -1,5 +1,6 @@
 """The ball detector against rendered truth: errors by distance, recall, false balls, hidden balls."""
 
+import itertools
 import math
 from functools import cache
 
@@ -137,19 +138,23 @@ def test_half_hidden_ball_is_less_certain() -> None:
     assert half.covariance_m2[0, 0] > 2 * whole.covariance_m2[0, 0]
 
 
-@pytest.mark.parametrize("height_m", [0.1, 0.3, 0.5])
-@pytest.mark.parametrize("distance_m", [1.0, 3.0, 5.0])
+@pytest.mark.parametrize(
+    ("distance_m", "height_m"),
+    [*itertools.product((1.0, 3.0, 5.0), (0.1, 0.3, 0.5)), (3.0, 0.8), (5.0, 0.8), (7.0, 0.8), (7.0, 1.1)],
+)
 def test_ball_in_the_air_is_found_at_its_height(distance_m: float, height_m: float) -> None:
     rng, normed = np.random.default_rng(round(100 * distance_m)), []
-    for _ in range(30):
+    for _ in range(60):
         angle = rng.uniform(-math.pi, math.pi)
         place_m = distance_m * np.array((math.cos(angle), math.sin(angle)))
         ball_m = (place_m[0] - 1.0, place_m[1] + 2.0, height_m + 0.11)
         ball = FINDER.find(picture(Scene(Pose(-1.0, 2.0, 0.0), [], ball_m), rng, SHAKE_PX))
-        assert ball is not None
+        if ball is None:
+            continue
         assert ball.z_m == pytest.approx(height_m, abs=0.04 + 0.015 * distance_m)
         error = np.array((ball.x_m, ball.y_m)) - place_m
         normed.append(error @ np.linalg.solve(ball.covariance_m2, error))
+    assert len(normed) >= 54
     assert 0.3 < np.mean(normed) / 2 < 1.8
 
 
@@ -219,7 +224,7 @@ def test_stripe_with_a_balls_area_is_no_ball() -> None:
 def test_all_things_like_a_ball_are_found_the_likelier_earlier() -> None:
     frame = renderer().render(Scene(Pose(-1.0, 2.0, 0.0), [], (1.0, 2.0, 0.11)))
     column, row, radius_px = MIRROR.sphere((0.0, 3.0, 0.11), 0.09)  # a smaller ball, so a less likely one
-    rows, columns = np.mgrid[:400, :400]
+    rows, columns = np.mgrid[: MIRROR.size_px, : MIRROR.size_px]
     frame[np.hypot(columns - column, rows - row) < radius_px] = ORANGE
     likely, unlikely = FINDER.find_all(frame)
     assert (likely.x_m, likely.y_m) == pytest.approx((2.0, 0.0), abs=0.05)
