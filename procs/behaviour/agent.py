@@ -14,7 +14,7 @@ from procs.behaviour.game import Game, frame_of, game_of
 from procs.behaviour.order import Order
 from procs.behaviour.skills.book import SKILLS
 from procs.behaviour.tactics import Tactics, leave_field
-from procs.behaviour.view import Ball, View, view_of
+from procs.behaviour.view import View, view_of
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import wrap_rad
@@ -90,8 +90,6 @@ class Agent(Component):
         view = view_of(
             model, self._robot, role.role, frame, agreement=said, players=players, bodies=self._bodies
         ).without(game.sent_off)
-        if not (view.ball.known or game.free_play):  # the crew puts it on the spot
-            view = view._replace(ball=Ball(known=True, place=game.spot))
         role.role, order = self._decide(view, game)
         self._tell_pass(role.agreement)
         role.intention = order.intention or order.skill

@@ -18,6 +18,11 @@ class State(IntEnum):
     HALF_TIME = 9
 
     @property
+    def is_set_piece(self) -> bool:
+        """True if the ball is put on a spot, from which a team, or either one, plays it."""
+        return self not in (State.FROZEN, State.PLAY, State.HALF_TIME)
+
+    @property
     def words(self) -> str:
         """Name of the state for people, such as `kick-off` or `corner kick`."""
         return _WORDS.get(self, self.name.lower().replace("_", " "))

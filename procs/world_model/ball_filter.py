@@ -44,6 +44,7 @@ _HELD_SPIN_M_S = 0.4  # deviation of the spin of a ball in a mouth, which follow
 _LEVELS = 20  # to which the probability of a contact is rounded
 _FIRST = np.array((0.3, 0.45, 0.2, 0.05))
 _FIRST_MOVING = np.array((0.05, 0.7, 0.2, 0.05))
+_PUT_DOWN = np.array((0.97, 0.01, 0.01, 0.01))
 
 
 class BallFilter:
@@ -114,6 +115,10 @@ class BallFilter:
         self._x[:, _CARPET] = carpet[0]
         self._p[:, _CARPET] = self._p[:, :, _CARPET] = 0.0
         self._p[:, _CARPET, _CARPET] = carpet[1]
+
+    def rest(self) -> None:
+        """Takes note that the ball was put down: it rests but for a small probability."""
+        self._weights, self._mixture = _PUT_DOWN.copy(), None
 
     @property
     def likeliest(self) -> tuple[float, float, float, float, float, float]:

@@ -41,6 +41,8 @@ _MOVES_M_S = 1.0  # a slower ball that seems to jump is more likely seen by a ro
 _FLIES_M = 0.1  # a ball that seems to be lower in the air may lie, and be hidden in part
 _BELOW_M = 0.3  # something on the ground is right below a ball in the air only if the ball's place is that certain
 _NEVER_US = -(1 << 60)
+_BESIDE_SPOT_M, _LIES_M_S = 0.6, 0.3  # a ball this near to the spot and this slow may lie beside a robot there
+_SPOT_M = 0.1  # deviation of the place of a ball that was put on a spot
 _HELD_M = 0.03  # deviation of a held ball's place in the mouth
 _HELD_M_S = 0.1
 _SEEMS_FURTHER = 0.06  # share of its distance by which a ball in the air that seems to lie appears too far away
@@ -190,6 +192,19 @@ class BallTrack:
         self.confirmed = {robot: (self.time_us, 0.0)}
         self._note_place()
         self.doubts = ()
+
+    def put_down(self, spot_m: Floats) -> None:
+        """Takes a ball that the crew has put down; see `BallTracker.put_down`."""
+        if self.filter is not None:
+            x_m, y_m, vx_m_s, vy_m_s, *_ = self.filter.likeliest
+            off_m = math.hypot(x_m - spot_m[0], y_m - spot_m[1])
+            if off_m < _BESIDE_SPOT_M and math.hypot(vx_m_s, vy_m_s) < _LIES_M_S:
+                return
+        self.filter = self._new(spot_m, np.eye(2) * _SPOT_M**2)
+        self.filter.rest()
+        self.flight = None
+        self.confirmed, self.doubts = {}, ()
+        self._note_place()
 
     def kick(self, velocity_m_s: Floats, lift_m_s: float, mouth: Seen) -> None:
         """Takes a kick at the time of the track; see `BallTracker.kick`."""

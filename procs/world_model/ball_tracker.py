@@ -23,7 +23,7 @@ from procs.world_model.walls import Walls
 _KEPT_US = 400_000  # older inputs are not used
 _LONGEST_STEP_US = 100_000
 _OBSERVER_US = 500_000
-_BY_OWN_CAMERA, _BY_MATE, _HELD, _KICKED = range(4)  # order of the inputs of one moment
+_PUT_DOWN, _BY_OWN_CAMERA, _BY_MATE, _HELD, _KICKED = range(5)  # order of the inputs of one moment
 
 _Input = Callable[[BallTrack], None]
 
@@ -139,6 +139,13 @@ class BallTracker:
             lift_m_s: velocity upwards.
         """
         self._take(_KICKED, age_s, lambda track: track.kick(velocity_m_s, lift_m_s, mouth))
+
+    def put_down(self, spot_m: Floats, age_s: float = 0.0) -> None:
+        """Takes a ball that the crew has put on a spot (2), world frame, or beside it; earlier inputs do not count.
+
+        A ball that seems to lie there already stays where it is.
+        """
+        self._take(_PUT_DOWN, age_s, lambda track: track.put_down(spot_m))
 
     def _take(self, rank: int, age_s: float, taken: _Input) -> None:
         """Keeps an input at its time, unless that is too long ago."""

@@ -10,11 +10,12 @@ from collections.abc import Sequence
 import numpy as np
 from pydantic import Field as Setting
 
-from fwk import Clock, Component, Config, Reads, Writes
+from fwk import Clock, Component, Config, Reads, Writes, channel
 from lcmtypes.robot import battery_state_t, kicker_state_t, odometry_t
 from lcmtypes.soccer import (
     ball_percept_t,
     drive_target_t,
+    game_state_t,
     obstacle_percepts_t,
     pose_t,
     role_t,
@@ -34,6 +35,7 @@ from procs.world_model.contact import Robots
 from procs.world_model.kicks import Kicks
 from procs.world_model.opponents import OpponentSettings, strangers
 from procs.world_model.own_view import OwnView
+from procs.world_model.placed_ball import PlacedBall
 from procs.world_model.possession import holder_of
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
@@ -104,6 +106,7 @@ class WorldModel(Component):
     drive_target: Reads[drive_target_t]
     battery_state: Reads[battery_state_t]
     team_inbox: Reads[team_inbox_t]
+    game_state: Reads[game_state_t] = channel("world/game_state")
     world_model: Writes[world_model_t]
     team_message: Writes[team_message_t]
     config: WorldModelConfig
@@ -121,6 +124,7 @@ class WorldModel(Component):
         self._kicker_us = self._role_us = self.clock.now_us
         """Time of the newest message of the own kicker, and of the own agent."""
         self._kicks = Kicks()
+        self._placed = PlacedBall()
         self._last_us = 0
         self._sent_us = -US_PER_S  # the first message is due at once
         self._untold_ball = self._untold_obstacles = Seen.NOTHING  # own sightings since the last message
@@ -204,12 +208,20 @@ class WorldModel(Component):
         robots = self._robots_near(team, passed_s)
         wall = float(self._ball.known and self._walls.near(self._ball.track, passed_s))
         self._ball.advance(passed_s, config.ball_timeout_s, contact=wall, robots=robots, walls=self._walls)
+        if self.game_state.has_value:
+            self._take_placed_ball()
         if self._holds and view.localized and not kicked:
             self._take_held_ball(view)
         self._held = self._holds
         if self.ball_percept.refreshed:
             self._look_for_ball(view, self.ball_percept.value)
         self._take_mates_ball(told)
+
+    def _take_placed_ball(self) -> None:
+        """Takes the ball that the crew has put down: it acts in the tick after the state of the game says so."""
+        spot_m = self._placed.spot_m(self.game_state.value, self._ball.known)
+        if spot_m is not None:
+            self._ball.put_down(spot_m)
 
     def _take_mates_ball(self, told: list[tuple[team_message_t, Mate]]) -> None:
         """Takes the ball that mates see, and the one in the mouth of a mate."""

@@ -81,18 +81,3 @@ def test_agent_without_a_radio_leaves_the_ball_to_a_nearer_mate(name: str, role:
     bench.port("game_state").put(state=game_state_t.PLAY)
     bench.iterate()
     assert bench.port("role").sent[-1].role == role
-
-
-@pytest.mark.parametrize(("x_m", "role"), [(0.0, DEFENDER), (-9.5, ATTACKER)])
-def test_ball_unseen_at_a_set_piece_lies_on_its_spot(x_m: float, role: str) -> None:
-    """A robot in the middle of the field once took itself for the nearest to a ball that nobody saw in the corner."""
-    bench = Bench(Agent, "cyan4/agent")
-    model = world_model_t(localized=True, x_m=x_m, y_m=5.0, n_silent_mates=1)
-    model.silent_mates = [robot_estimate_t(x_m=-8.0, y_m=4.0, vx_m_s=1.0)]
-    bench.port("world_model").put(model)
-    team = game_state_t.TEAM_MAGENTA
-    bench.port("game_state").put(
-        state=game_state_t.CORNER_KICK, state_team=team, stopped=True, ball_x_m=-10.8, ball_y_m=6.8
-    )
-    bench.iterate()
-    assert bench.port("role").sent[-1].role == role

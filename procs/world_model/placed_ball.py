@@ -1,0 +1,32 @@
+"""The ball of a set piece: the crew puts it on the spot that the state of the game tells."""
+
+import math
+
+import numpy as np
+
+from lcmtypes.soccer import game_state_t
+from procs.model.frames import Floats
+from procs.model.game_states import State, state_of
+from procs.model.geometry import plausible
+
+
+class PlacedBall:
+    """Tells where the ball lies because the crew has put it there."""
+
+    def __init__(self) -> None:
+        self._stopped_s = math.inf  # how long the game had been stopped in the last state; infinite: it was running
+
+    def spot_m(self, game: game_state_t, known: bool) -> Floats | None:
+        """Returns the spot (2), world frame, when a stoppage begins, and while an unknown ball waits there; else None.
+
+        Args:
+            game: the newest state of the game.
+            known: the ball is known.
+        """
+        begins = game.stopped and game.time_in_state_s < self._stopped_s
+        self._stopped_s = game.time_in_state_s if game.stopped else math.inf
+        state = state_of(game.state)
+        waits = state.is_set_piece and (game.stopped or state is not State.DROP_BALL)
+        if not (waits and (begins or not known) and plausible(game.ball_x_m, game.ball_y_m)):
+            return None
+        return np.array((game.ball_x_m, game.ball_y_m))
