@@ -39,6 +39,7 @@ _OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate'
 _AT_ONCE_US = 20_000  # robots that saw a ball within that time saw it at one place
 _MOVES_M_S = 1.0  # a slower ball that seems to jump is more likely seen by a robot that errs about its own place
 _FLIES_M = 0.1  # a ball that seems to be lower in the air may lie, and be hidden in part
+_SAME_RAY_M = 0.3  # a ball that near to the ray of a sighting may be what was seen
 _BELOW_M = 0.3  # something on the ground is right below a ball in the air only if the ball's place is that certain
 _NEVER_US = -(1 << 60)
 _BESIDE_SPOT_M, _LIES_M_S = 0.6, 0.3  # a ball this near to the spot and this slow may lie beside a robot there
@@ -68,6 +69,19 @@ class Sighting:
             return self.covariance_m2
         too_far_m = _SEEMS_FURTHER * (self.position_m - self.observer_m)
         return self.covariance_m2 + np.outer(too_far_m, too_far_m)
+
+    def may_be_nearer(self, place_m: tuple[float, float]) -> bool:
+        """Returns whether the ball that seems to lie here may be one in the air at a nearer place on the same ray.
+
+        Such a ball, of which a robot hides a part, is as large as one on the ground behind it.
+        """
+        if self.height_m > 0.0 or self.observer_m is None:
+            return False
+        seems_m, is_m = self.position_m - self.observer_m, place_m - self.observer_m
+        seems_x_m, seems_y_m, is_x_m, is_y_m = *seems_m.tolist(), *is_m.tolist()
+        distance_m, along_m2 = math.hypot(seems_x_m, seems_y_m), seems_x_m * is_x_m + seems_y_m * is_y_m
+        across_m2 = abs(seems_x_m * is_y_m - seems_y_m * is_x_m)
+        return 0.0 < along_m2 < distance_m**2 and across_m2 < _SAME_RAY_M * distance_m
 
     @property
     def weakness(self) -> float:
@@ -266,6 +280,8 @@ class BallTrack:
         if velocity_m_s is None or self._contradicted(sighting.robot, self.time_us - _AT_ONCE_US):
             return False
         flies = flight is not None and flight.height_m > _FLIES_M
+        if flies and sighting.may_be_nearer(self.filter.likeliest[:2]):
+            return False
         if not flies and math.hypot(vx_m_s, vy_m_s) <= _MOVES_M_S:
             return False
         if flight is not None and self.filter.copy().see(sighting.position_m, sighting.of_flying_m2()):

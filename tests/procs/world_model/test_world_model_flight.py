@@ -198,6 +198,20 @@ def test_lob_that_met_something_keeps_its_height() -> None:
     assert tracker.flight.lift_m_s == pytest.approx(before.lift_m_s, abs=0.02)
 
 
+@pytest.mark.parametrize(("aside_m", "jumps"), [(0.0, False), (0.15, False), (0.9, True)])
+def test_half_hidden_lob_seems_to_lie_further_away_on_its_ray(aside_m: float, jumps: bool) -> None:
+    tracker, rng = just_lobbed(LIFT_M_S), np.random.default_rng(2)
+    for tick, (place, _) in enumerate(islice(lobbed(), 4)):
+        tracker.advance(PERIOD_S, 2.0)
+        if tick < 3 and (sighting := seen(place, rng)):
+            tracker.see(sighting)
+    ray_m = (place[:2] - EYE_M) / np.hypot(*(place[:2] - EYE_M))
+    behind_m = place[:2] + 0.9 * ray_m + aside_m * np.array((-ray_m[1], ray_m[0]))
+    tracker.see(Sighting("b", False, behind_m, np.eye(2) * 0.1**2, observer_m=EYE_M))
+    assert (tracker.flight is None) is jumps
+    assert bool(np.hypot(*(tracker.track.state[:2] - place[:2])) > 0.5) is jumps
+
+
 def test_slow_ball_that_seems_to_fly_low_does_not_jump() -> None:
     """A robot sees a half hidden ball in the air for a moment; another errs about the ball's place."""
     tracker = BallTracker()
