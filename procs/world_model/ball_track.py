@@ -77,8 +77,8 @@ class Sighting:
         """
         if self.height_m > 0.0 or self.observer_m is None:
             return False
-        seems_m, is_m = self.position_m - self.observer_m, place_m - self.observer_m
-        seems_x_m, seems_y_m, is_x_m, is_y_m = *seems_m.tolist(), *is_m.tolist()
+        seems_x_m, seems_y_m = (self.position_m - self.observer_m).tolist()
+        is_x_m, is_y_m = (place_m - self.observer_m).tolist()
         distance_m, along_m2 = math.hypot(seems_x_m, seems_y_m), seems_x_m * is_x_m + seems_y_m * is_y_m
         across_m2 = abs(seems_x_m * is_y_m - seems_y_m * is_x_m)
         return 0.0 < along_m2 < distance_m**2 and across_m2 < _SAME_RAY_M * distance_m
