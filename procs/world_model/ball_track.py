@@ -81,7 +81,7 @@ class Sighting:
         is_x_m, is_y_m = (place_m - self.observer_m).tolist()
         distance_m, along_m2 = math.hypot(seems_x_m, seems_y_m), seems_x_m * is_x_m + seems_y_m * is_y_m
         across_m2 = abs(seems_x_m * is_y_m - seems_y_m * is_x_m)
-        return 0.0 < along_m2 < distance_m**2 and across_m2 < _SAME_RAY_M * distance_m
+        return bool(0.0 < along_m2 < distance_m**2 and across_m2 < _SAME_RAY_M * distance_m)
 
     @property
     def weakness(self) -> float:
