@@ -11,7 +11,7 @@ A moving ball that can have come there from where it was seen last has met somet
 tells about its velocity. Otherwise the sighting is kept as a doubt, until a better source confirms the track; two
 doubts that fit each other begin a new track, too: the ball was kicked or was placed elsewhere. Two doubts of one robot
 do not suffice if another robot has confirmed the track meanwhile. One doubt suffices if no robot has seen the ball for
-a while, as during most of a lob.
+a while.
 """
 
 import math
