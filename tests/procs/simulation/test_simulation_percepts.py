@@ -280,8 +280,9 @@ def test_ball_above_robots_is_not_hidden() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("away_m", [1.5, 3.0])
-@pytest.mark.parametrize("height_m", [0.15, 0.35])
+@pytest.mark.parametrize(
+    ("away_m", "height_m"), [(1.5, 0.15), (1.5, 0.35), (3.0, 0.15), (3.0, 0.35), (3.0, 0.65), (5.0, 0.6), (5.0, 0.9)]
+)
 def test_errors_in_the_air_are_those_of_pictures(away_m: float, height_m: float) -> None:
     def errors(rendered: bool) -> tuple[float, float]:
         across, up = [], []
