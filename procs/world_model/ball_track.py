@@ -7,8 +7,8 @@ Order of the sources of sightings:
 3. Mates, when the robot does not see the ball itself; among them the more precise.
 
 A sighting that does not fit the track is dropped if a better source has confirmed the track at the same exposure.
-A moving ball that can have come there from where it was seen last has met something: a new track begins, and the way
-tells about its velocity. Otherwise the sighting is kept as a doubt, until a better source confirms the track; two
+A moving ball that something may have touched, and that can have come there from where it was seen last, has met it: a
+new track begins, and the way tells about its velocity. Otherwise the sighting is kept as a doubt, until a better source confirms the track; two
 doubts that fit each other begin a new track, too: the ball was kicked or was placed elsewhere. Two doubts of one robot
 do not suffice if another robot has confirmed the track meanwhile. One doubt suffices if no robot has seen the ball for
 a while.
@@ -25,7 +25,7 @@ from procs.model.ball import BallModel
 from procs.model.frames import Floats
 from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
-from procs.world_model.ball_modes import NO_CONTACT, Contact
+from procs.world_model.ball_modes import NO_CONTACT, Contact, Mode
 from procs.world_model.contact import Robots
 from procs.world_model.flight import Flight
 from procs.world_model.seen import Seen
@@ -38,6 +38,7 @@ _LATE_S = 0.03  # time by which a track lies behind a ball that was kicked
 _OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
 _AT_ONCE_US = 20_000  # robots that saw a ball within that time saw it at one place
 _MOVES_M_S = 1.0  # a slower ball that seems to jump is more likely seen by a robot that errs about its own place
+_MET = 0.003  # least probability that something has touched a ball that jumps
 _FLIES_M = 0.1  # a ball that seems to be lower in the air may lie, and be hidden in part
 _SAME_RAY_M = 0.3  # a ball that near to the ray of a sighting may be what was seen
 _BELOW_M = 0.3  # something on the ground is right below a ball in the air only if the ball's place is that certain
@@ -272,10 +273,13 @@ class BallTrack:
     def _struck(self, sighting: Sighting) -> bool:
         """Begins a new track with the sighting of a moving ball that met something; returns False if it met nothing.
 
-        A ball in the air is elsewhere then: where only the height does not fit, another thing may be seen.
+        It can only have met what is near: far from all robots and walls another thing is seen. A ball in the air is
+        elsewhere then: where only the height does not fit, another thing may be seen, too.
         """
         assert self.filter is not None
         flight, (*_, vx_m_s, vy_m_s, _, _) = self.flight, self.filter.likeliest
+        if self.filter.weights[Mode.HANDLED] + self.filter.weights[Mode.HIT] < _MET:
+            return False
         velocity_m_s = self._velocity_to(sighting, self.time_us)
         if velocity_m_s is None or self._contradicted(sighting.robot, self.time_us - _AT_ONCE_US):
             return False

@@ -118,12 +118,12 @@ def test_moved_ball_is_found_with_the_second_sighting() -> None:
     assert tracker.track.state[:2] == pytest.approx((-3.0, 0.0), abs=0.05)
 
 
-@pytest.mark.parametrize(("runs_on", "found"), [(False, True), (True, False)])
-def test_moving_ball_that_met_something_is_found_at_once(runs_on: bool, found: bool) -> None:
-    """Something turns a ball of 5 m/s aside; one sighting tells, unless a mate sees the ball run on."""
+@pytest.mark.parametrize(("contact", "runs_on", "found"), [(1.0, False, True), (1.0, True, False), (0.0, False, False)])
+def test_moving_ball_that_met_something_is_found_at_once(contact: float, runs_on: bool, found: bool) -> None:
+    """A ball of 5 m/s is turned aside; one sighting tells, unless a mate sees the ball run on or nothing was near."""
     tracker, place_m = BallTracker(), np.zeros(2)
     for frame in range(12):
-        tracker.advance(PERIOD_S, 2.0)
+        tracker.advance(PERIOD_S, 2.0, contact=contact)
         place_m = np.array((5.0 * PERIOD_S * frame, 0.0))
         if frame < 11 or runs_on:
             tracker.see(Sighting("mate", False, place_m, np.eye(2) * 0.03**2))

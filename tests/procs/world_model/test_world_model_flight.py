@@ -188,7 +188,7 @@ def test_lob_that_met_something_keeps_its_height() -> None:
     """Something turns a lob aside a moment after the kick: the way over the ground is new, the parabola is not."""
     tracker = just_lobbed(LIFT_M_S)
     for _ in range(3):
-        tracker.advance(PERIOD_S, 2.0)
+        tracker.advance(PERIOD_S, 2.0, contact=1.0)
     before = tracker.flight
     assert before is not None
     place_m = tracker.track.state[:2] + np.array((-0.3, 0.5))
@@ -202,7 +202,7 @@ def test_lob_that_met_something_keeps_its_height() -> None:
 def test_half_hidden_lob_seems_to_lie_further_away_on_its_ray(aside_m: float, jumps: bool) -> None:
     tracker, rng = just_lobbed(LIFT_M_S), np.random.default_rng(2)
     for tick, (place, _) in enumerate(islice(lobbed(), 4)):
-        tracker.advance(PERIOD_S, 2.0)
+        tracker.advance(PERIOD_S, 2.0, contact=1.0)
         if tick < 3 and (sighting := seen(place, rng)):
             tracker.see(sighting)
     ray_m = (place[:2] - EYE_M) / np.hypot(*(place[:2] - EYE_M))
