@@ -8,10 +8,10 @@ Order of the sources of sightings:
 
 A sighting that does not fit the track is dropped if a better source has confirmed the track at the same exposure.
 A moving ball that something may have touched, and that can have come there from where it was seen last, has met it: a
-new track begins, and the way tells about its velocity. Otherwise the sighting is kept as a doubt, until a better source confirms the track; two
-doubts that fit each other begin a new track, too: the ball was kicked or was placed elsewhere. Two doubts of one robot
-do not suffice if another robot has confirmed the track meanwhile. One doubt suffices if no robot has seen the ball for
-a while.
+new track begins, and the way tells about its velocity. Otherwise the sighting is kept as a doubt, until a better source
+confirms the track; two doubts that fit each other begin a new track, too: the ball was kicked or was placed elsewhere.
+Two doubts of one robot do not suffice if another robot has confirmed the track meanwhile. One doubt suffices if no
+robot has seen the ball for a while.
 """
 
 import math
