@@ -135,10 +135,14 @@ def _bounced(piece: Piece) -> set[int]:
     """Returns the ticks in which, or shortly before which, a wall, a post or a net turned or stopped the ball."""
     ticks: set[int] = set()
     for (_, before), (tick, truth) in itertools.pairwise(sorted(piece.truth.items())):
-        change_m_s = math.hypot(truth.ball_vx_m_s - before.ball_vx_m_s, truth.ball_vy_m_s - before.ball_vy_m_s)
-        if change_m_s > _BOUNCE_M_S:
+        if _change_m_s(before, truth) > _BOUNCE_M_S:
             ticks.update(range(tick, tick + round(SETTLED_S / piece.period_s) + 1))
     return ticks
+
+
+def _change_m_s(before: ground_truth_t, truth: ground_truth_t) -> float:
+    """Returns the change of the ball's velocity over the ground."""
+    return math.hypot(truth.ball_vx_m_s - before.ball_vx_m_s, truth.ball_vy_m_s - before.ball_vy_m_s)
 
 
 def flies(truth: ground_truth_t) -> bool:
@@ -175,23 +179,29 @@ def surprise_of(covariance: Floats, error: Floats) -> float:
 
 
 def _kicks(piece: Piece) -> Samples:
-    """Seconds from a kick until each robot knows the ball's velocity within a tenth; infinite if it never does."""
+    """Seconds from a kick until each robot knows the ball's velocity within a tenth; infinite if it never does.
+
+    A kick against a robot, a wall or a post does not count: the ball has another velocity at once.
+    """
     delays_s: list[float] = []
     own_s: list[float] = []
     for tick, events in piece.events.items():
         for kick in events:
             if kick.kind == match_event_t.KICK and kick.speed_m_s >= _KICK_M_S and tick * piece.period_s >= START_S:
-                found = _delays_s(piece, tick, kick.robot)
+                found = _delays_s(piece, tick, kick)
                 delays_s += found.values()
                 own_s += [delay_s for robot, delay_s in found.items() if piece.team(robot) == piece.team(kick.robot)]
     return {"velocity known after a kick": np.array(delays_s), "velocity known after an own kick": np.array(own_s)}
 
 
-def _delays_s(piece: Piece, kicked: int, kicker: str) -> dict[str, float]:
-    """Returns the delay of each robot; none if another robot touches the ball soon."""
-    flight = []
+def _delays_s(piece: Piece, kicked: int, kick: match_event_t) -> dict[str, float]:
+    """Returns the delay of each robot; none if another robot, a wall or a post soon turns the ball."""
+    flight, first = [], piece.truth[kicked]
+    if abs(math.hypot(first.ball_vx_m_s, first.ball_vy_m_s) - kick.speed_m_s) > _BOUNCE_M_S:
+        return {}
     for tick in range(kicked, max(piece.truth) + 1):
-        if tick > kicked and piece.touched_by(tick, 0.0) - {kicker}:
+        touched = tick > kicked and piece.touched_by(tick, 0.0) - {kick.robot}
+        if touched or (tick > kicked and _change_m_s(piece.truth[tick - 1], piece.truth[tick]) > _BOUNCE_M_S):
             break
         flight.append(tick)
     if len(flight) * piece.period_s < SETTLED_S:

@@ -195,6 +195,16 @@ def test_kick_delay_ends_when_the_velocity_is_known() -> None:
     assert found["velocity known after an own kick"].tolist() == pytest.approx([0.15])
 
 
+@pytest.mark.parametrize(("bounces_after", "counts"), [(0, 0), (3, 0), (20, 1)])
+def test_kick_against_a_wall_is_not_measured(bounces_after: int, counts: int) -> None:
+    made = piece([robot("cyan1", 0.0, 1.0)], vx_m_s=5.0)
+    made.events[FIRST] = [event(match_event_t.KICK, "cyan1", 5.0)]
+    made.by_robot["world_model"] = {"cyan1": {tick: model((0.0, 0.0)) for tick in made.truth}}
+    for tick in range(FIRST + bounces_after, FIRST + 40):
+        made.truth[tick].ball_vx_m_s = -2.5
+    assert len(believed(made)["velocity known after a kick"]) == counts
+
+
 def test_lag_of_an_opponent_is_its_distance_behind_by_its_speed() -> None:
     made = piece([robot("cyan1", 0.0, 1.0), robot("magenta1", 2.0, 0.0, vx_m_s=2.0)])
     behind = robot_estimate_t()
