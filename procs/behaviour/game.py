@@ -6,7 +6,7 @@ from typing import NamedTuple
 from lcmtypes.soccer import game_state_t
 from procs.behaviour.view import Frame
 from procs.model.field import Point
-from procs.model.game_states import State, state_of
+from procs.model.game_states import State, is_free, state_of
 from procs.model.geometry import plausible
 from procs.model.teams import Ends, Team
 
@@ -35,7 +35,7 @@ class Game(NamedTuple):
     @property
     def free_play(self) -> bool:
         """True if all robots may play the ball."""
-        return self.state is State.PLAY or (self.state is State.DROP_BALL and not self.stopped)
+        return is_free(self.state, self.stopped)
 
     @property
     def paused(self) -> bool:

@@ -196,12 +196,12 @@ def _kicks(piece: Piece) -> Samples:
 
 def _delays_s(piece: Piece, kicked: int, kick: match_event_t) -> dict[str, float]:
     """Returns the delay of each robot; none if another robot, a wall or a post soon turns the ball."""
-    flight, first = [], piece.truth[kicked]
+    flight, first = [kicked], piece.truth[kicked]
     if abs(math.hypot(first.ball_vx_m_s, first.ball_vy_m_s) - kick.speed_m_s) > _BOUNCE_M_S:
         return {}
-    for tick in range(kicked, max(piece.truth) + 1):
-        touched = tick > kicked and piece.touched_by(tick, 0.0) - {kick.robot}
-        if touched or (tick > kicked and _change_m_s(piece.truth[tick - 1], piece.truth[tick]) > _BOUNCE_M_S):
+    for tick in range(kicked + 1, max(piece.truth) + 1):
+        touched = piece.touched_by(tick, 0.0) - {kick.robot}
+        if touched or _change_m_s(piece.truth[tick - 1], piece.truth[tick]) > _BOUNCE_M_S:
             break
         flight.append(tick)
     if len(flight) * piece.period_s < SETTLED_S:

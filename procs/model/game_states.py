@@ -28,6 +28,11 @@ class State(IntEnum):
         return _WORDS.get(self, self.name.lower().replace("_", " "))
 
 
+def is_free(state: State, stopped: bool) -> bool:
+    """Returns whether all robots may play the ball."""
+    return state is State.PLAY or (state is State.DROP_BALL and not stopped)
+
+
 def state_of(number: int) -> State:
     """Returns the state of a message; FROZEN, in which no robot moves, for a number that is none."""
     return _STATES.get(number, State.FROZEN)

@@ -140,12 +140,12 @@ class BallTracker:
         """
         self._take(_KICKED, age_s, lambda track: track.kick(velocity_m_s, lift_m_s, mouth))
 
-    def put_down(self, spot_m: Floats, age_s: float = 0.0) -> None:
-        """Takes a ball that the crew has put on a spot (2), world frame, or beside it; earlier inputs do not count.
+    def put_down(self, spot_m: Floats) -> None:
+        """Takes a ball that the crew has just put on or beside a spot (2), world frame; earlier inputs do not count.
 
         A ball that seems to lie there already stays where it is.
         """
-        self._take(_PUT_DOWN, age_s, lambda track: track.put_down(spot_m))
+        self._take(_PUT_DOWN, 0.0, lambda track: track.put_down(spot_m))
 
     def _take(self, rank: int, age_s: float, taken: _Input) -> None:
         """Keeps an input at its time, unless that is too long ago."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from lcmtypes.soccer import game_state_t
 from procs.model.frames import Floats
-from procs.model.game_states import State, state_of
+from procs.model.game_states import is_free, state_of
 from procs.model.geometry import plausible
 
 
@@ -26,7 +26,7 @@ class PlacedBall:
         begins = game.stopped and game.time_in_state_s < self._stopped_s
         self._stopped_s = game.time_in_state_s if game.stopped else math.inf
         state = state_of(game.state)
-        waits = state.is_set_piece and (game.stopped or state is not State.DROP_BALL)
+        waits = state.is_set_piece and not is_free(state, game.stopped)
         if not (waits and (begins or not known) and plausible(game.ball_x_m, game.ball_y_m)):
             return None
         return np.array((game.ball_x_m, game.ball_y_m))

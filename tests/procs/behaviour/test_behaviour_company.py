@@ -13,6 +13,7 @@ from procs.behaviour.view import Robot, View
 from procs.model.field import Point
 from procs.model.game_states import State
 from procs.model.robot import ABSENT, PLAYERS, Player
+from procs.world_model.world_model import WorldModel
 from tests.procs.behaviour.behaviour_parts import FIELD, ball, job, robot, view
 
 BALL = ball(2.0, 1.0)
@@ -79,5 +80,22 @@ def test_agent_without_a_radio_leaves_the_ball_to_a_nearer_mate(name: str, role:
     model.silent_mates, model.n_silent_mates = [robot_estimate_t(x_m=1.0, vx_m_s=1.0)], 1
     bench.port("world_model").put(model)
     bench.port("game_state").put(state=game_state_t.PLAY)
+    bench.iterate()
+    assert bench.port("role").sent[-1].role == role
+
+
+@pytest.mark.parametrize(("x_m", "role"), [(0.0, DEFENDER), (-9.5, ATTACKER)])
+def test_ball_unseen_at_a_set_piece_lies_on_its_spot(x_m: float, role: str) -> None:
+    """A robot in the middle of the field once took itself for the nearest to a ball that nobody saw in the corner."""
+    game = game_state_t(state=game_state_t.CORNER_KICK, state_team=game_state_t.TEAM_MAGENTA, stopped=True)
+    game.ball_x_m, game.ball_y_m = -10.8, 6.8
+    world, bench = Bench(WorldModel, "cyan4/world_model"), Bench(Agent, "cyan4/agent")
+    world.port("game_state").put(game)
+    world.iterate()
+    model = world_model_t(localized=True, x_m=x_m, y_m=5.0, n_silent_mates=1)
+    model.silent_mates = [robot_estimate_t(x_m=-8.0, y_m=4.0, vx_m_s=1.0)]
+    model.ball = world.port("world_model").sent[-1].ball
+    bench.port("world_model").put(model)
+    bench.port("game_state").put(game)
     bench.iterate()
     assert bench.port("role").sent[-1].role == role
