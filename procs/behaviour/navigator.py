@@ -133,14 +133,26 @@ class Navigator(Component):
         state.arrived = state.distance_m < config.near_m and abs(turn_rad) < config.near_rad
         if way.blocked:
             state.error = navigator_state_t.OBSTRUCTED
-        wanted = self._velocity(target, way, turn_rad)
+        # Wheels that turn a robot which the wall holds back report a turn, and the robot drives in wrong directions.
+        at_wall = obstacles.touches_wall(Point(model.x_m, model.y_m), config.field, self._bodies)
+        wanted = self._velocity(target, way, 0.0 if at_wall else turn_rad)
         if target.avoid_robots:
             wanted = self._give_way(wanted, pose.place, model)
+        self._before = self._within_walls(self._before, pose.place)
+        wanted = self._within_walls(wanted, pose.place)
         self._command(wanted, pose.heading_rad)
 
     def _possible(self, start: Point, barred: bool, end: Point) -> bool:
         """Returns whether a detour may turn at its end."""
         return obstacles.inside_walls(end, self.config.field, self._bodies) and self._goals.is_open(start, end, barred)
+
+    def _within_walls(self, velocity: Velocity, place: Point) -> Velocity:
+        config = self.config
+        over_ground_m_s = Point(velocity.vx_m_s, velocity.vy_m_s)
+        slower = obstacles.brakes_at_walls(
+            over_ground_m_s, place, config.field, self._bodies, config.limits.braking_m_s2
+        )
+        return Velocity(*slower, velocity.omega_rad_s)
 
     def _give_way(self, wanted: Velocity, place: Point, model: world_model_t) -> Velocity:
         players = self.config.players

@@ -85,6 +85,34 @@ def test_navigator_turns_the_short_way() -> None:
     assert newest(navigate(3, heading_rad=-math.pi * 0.4), "motor_command").omega_rad_s < 0
 
 
+@pytest.mark.parametrize(
+    ("place", "turns"),
+    [((9.0, -7.74), False), ((9.0, 7.84), False), ((-11.74, 3.0), False), ((9.0, -7.6), True), ((11.6, 3.0), True)],
+)
+def test_robot_at_the_wall_turns_after_it_has_left(place: tuple[float, float], turns: bool) -> None:
+    bench = Bench(Navigator, "cyan2/navigator")
+    x_m, y_m = place
+    put(bench, "world_model", localized=True, x_m=x_m, y_m=y_m)
+    put(bench, "odometry")
+    put(bench, "drive_target", x_m=7.0, heading_rad=1.5)
+    bench.iterate()
+    command = newest(bench, "motor_command")
+    assert (command.omega_rad_s > 0.0) == turns
+    assert math.hypot(command.vx_m_s, command.vy_m_s) > 0.1
+
+
+@pytest.mark.parametrize(("y_m", "fastest_m_s"), [(7.0, 1.9), (7.5, 1.0), (7.69, 0.3), (7.75, 0.0)])
+def test_robot_brakes_before_the_wall(y_m: float, fastest_m_s: float) -> None:
+    bench = Bench(Navigator, "cyan2/navigator")
+    for at_m in [0.0] * 20 + [y_m]:
+        put(bench, "world_model", localized=True, y_m=at_m)
+        put(bench, "odometry")
+        put(bench, "drive_target", y_m=7.0 if at_m == 0.0 else -3.0)
+        bench.iterate()
+    assert bench.port("motor_command").sent[-2].vy_m_s > 2.5
+    assert newest(bench, "motor_command").vy_m_s <= fastest_m_s
+
+
 def test_navigator_reports_its_arrival() -> None:
     assert newest(navigate(x_m=0.02, heading_rad=math.pi / 2), "navigator_state").arrived
 
