@@ -22,6 +22,7 @@ _ROOM_PRESSED_M = 0.05  # ... or less before the ball is lost
 _FAR_M, _ROOM_FAR_M = 6.0, 0.4  # a keeper reaches shots from further away that have less room; a lob is better
 _CROSS_M = 8.0  # a mate so near to the goal gets the ball without delay
 _CLOSE_M = 3.0  # if a rival is so near
+_MARKED_M = 1.0  # a mate with a rival so near gets no pass in free play
 _BACK_M = 1.0  # a pass may lose so much ground ...
 _FAR_BACK_M = 4.0  # ... or so much, if the ball must go
 _PRESSED_M, _PRESSED_S = 1.3, 0.6  # a rival so near, or in so short a time, presses the robot
@@ -88,7 +89,7 @@ class BallPlay:
         order = self._pass(view, agreed, math.inf, 0.0, receiver)
         order = order and order._replace(speed_m_s=_GENTLE_M_S)
         for lane_rad in (aim.LANE_RAD, 0.0):
-            order = order or self._pass_on(view, math.inf, lane_rad, receiver)
+            order = order or self._pass(view, field_players(view), math.inf, lane_rad, receiver)
         return order or (self._clear(view) if field_players(view) else self._set_free(view))
 
     def _set_free(self, view: View) -> Order:
@@ -138,7 +139,7 @@ class BallPlay:
         if kick is None or kick.intention == "clear":
             return kick
         if kick.intention == "pass":
-            mates = [mate for mate in view.mates if mate.name == kick.receiver]
+            mates = [mate for mate in _unmarked(view, view.mates) if mate.name == kick.receiver]
             return self._pass(view, mates, math.inf, 0.0, kick.receiver)
         if kick.intention == "lob":
             return kick if aim.best_lob(view.ball.place, view.others, self.field, view.bodies).free_rad > 0.0 else None
@@ -225,7 +226,7 @@ class BallPlay:
             return None
         mates = [
             mate
-            for mate in field_players(view)
+            for mate in _unmarked(view, field_players(view))
             if math.dist(mate.place, goal) < min(_CROSS_M, own_m - 1.0) and self._mouth_rad(mate.place) > _MOUTH_RAD
         ]
         return self._pass(view, mates, math.inf, aim.LANE_RAD, "")
@@ -260,8 +261,8 @@ class BallPlay:
         best = max(inside, key=room_rad)
         return Order("push", best, bearing_rad(start, best), "push", _PUSH_M_S)
 
-    def _pass_on(self, view: View, back_m: float, lane_rad: float = aim.LANE_RAD, kept: str = "") -> Order | None:
-        return self._pass(view, field_players(view), back_m, lane_rad, kept)
+    def _pass_on(self, view: View, back_m: float) -> Order | None:
+        return self._pass(view, _unmarked(view, field_players(view)), back_m, aim.LANE_RAD, "")
 
     def _pass(self, view: View, mates: Sequence[Robot], back_m: float, lane_rad: float, kept: str) -> Order | None:
         asked = [mate for mate in mates if self._passing.may_ask(mate)]
@@ -277,6 +278,10 @@ def _presses(rival: Robot, place: Point) -> bool:
     way_rad = bearing_rad(rival.place, place)
     closing_m_s = rival.velocity_m_s.x_m * math.cos(way_rad) + rival.velocity_m_s.y_m * math.sin(way_rad)
     return math.dist(rival.place, place) - _PRESSED_S * max(0.0, closing_m_s) < _PRESSED_M
+
+
+def _unmarked(view: View, mates: Sequence[Robot]) -> list[Robot]:
+    return [mate for mate in mates if all(math.dist(mate.place, other.place) > _MARKED_M for other in view.opponents)]
 
 
 def field_players(view: View) -> list[Robot]:

@@ -1,8 +1,8 @@
 """Passes agreed between two robots through the messages of the team: announced, accepted, or dropped after a time-out.
 
-The robot with the ball announces to which mate it would pass, before it passes. That mate accepts, stands still and
-looks at the ball. A pass to a mate that has not accepted in time is dropped, and the passer does not ask that mate for
-a while. Both keep to the pass until the ball has arrived.
+The robot with the ball announces to which mate it would pass, before it passes. That mate accepts, stops and looks at
+the ball, and the passer waits until it stands. A pass to a mate that has not accepted in time is dropped, and that mate
+is not asked for a while. Both keep to the pass until the ball has arrived.
 """
 
 import math
@@ -15,6 +15,8 @@ ANSWER_S = 0.5
 _REFUSED_S = 1.5  # for so long the mate is not asked again
 _FLIGHT_S = 2.5  # a pass has arrived by then, or got lost
 _TAKEN_M = 0.42  # a robot this near to the ball has it
+_STANDS_M_S = 0.5  # a slower receiver stands, as far as its mates know ...
+_STOPS_S = 0.4  # ... and has stopped so long after its answer
 
 _NOWHERE = Point(0.0, 0.0)
 
@@ -27,7 +29,9 @@ class Passing:
         """Agreement that the team is told in this tick."""
         self.accepted = False
         """Whether the mate to which a pass is announced waits for it."""
-        self._asked_s = 0.0
+        self.stands = False
+        """Whether that mate has accepted, and stands."""
+        self._asked_s = self._accepted_s = 0.0
         self._flight_s = math.inf
         self._refused_s: dict[str, float] = {}
 
@@ -50,13 +54,18 @@ class Passing:
         if not holds_ball and (lost or self._flight_s > _FLIGHT_S or _arrived(view, self.said.receiver)):
             self.announce("")
         self._asked_s += duration_s
-        self.accepted = any(mate.name == self.said.receiver and mate.agreement.passer == own for mate in view.mates)
+        receiver = next((mate for mate in view.mates if mate.name == self.said.receiver), None)
+        self.accepted = receiver is not None and receiver.agreement.passer == own
+        self._accepted_s = self._accepted_s + duration_s if self.accepted else 0.0
+        slow = receiver is not None and math.hypot(*receiver.velocity_m_s) < _STANDS_M_S
+        self.stands = self.accepted and (slow or self._accepted_s > _STOPS_S)
         self.said = self.said._replace(passer="" if holds_ball or lost else _announcer(view))
 
     def announce(self, receiver: str, place: Point = _NOWHERE) -> None:
         """Announces a pass to a mate at its place; an empty name takes the announcement back."""
         if receiver != self.said.receiver:
-            self._asked_s, self.accepted = 0.0, False
+            self._asked_s = self._accepted_s = 0.0
+            self.accepted = self.stands = False
         self.said = self.said._replace(receiver=receiver, place=place)
 
     def drop(self) -> None:

@@ -220,11 +220,11 @@ class Tactics:
         self.passing.announce(*(likely.receiver, likely.place) if likely else ("",))
 
     def _agreed(self, order: Order) -> Order:
-        """Returns the order; a pass to which the receiver has not agreed yet is aimed, but not played."""
+        """Returns the order; a pass for which the receiver does not stand ready yet is aimed, but not played."""
         if order.skill != "pass":
             return order
         self.passing.announce(order.receiver, order.place)
-        ready = self.passing.accepted or self.passing.late
+        ready = self.passing.stands or self.passing.late
         return order if ready else order._replace(skill="aim", intention="announce pass")
 
     def _go_for_ball(self, view: View) -> Order:

@@ -42,6 +42,29 @@ def test_pass_is_announced_and_played_once_accepted() -> None:
     assert play(tactics, pressed(agreed(NEAR)), 2 * TICK_S)[-1].skill == "pass"
 
 
+def test_passer_waits_until_the_receiver_has_stopped() -> None:
+    tactics = Tactics(FIELD)
+    moving = agreed(NEAR)._replace(velocity_m_s=Point(0.0, 1.0))
+    orders = play(tactics, pressed(moving), 0.4)
+    assert orders[-1].skill == "aim"
+    assert play(tactics, pressed(agreed(NEAR)), 2 * TICK_S)[-1].skill == "pass"
+
+
+def test_passer_does_not_wait_long_for_a_receiver_that_drives_on() -> None:
+    moving = agreed(NEAR)._replace(velocity_m_s=Point(0.0, 1.0))
+    orders = play(Tactics(FIELD), pressed(moving), 0.7)
+    assert (orders[5].skill, orders[-1].skill) == ("aim", "pass")
+
+
+@pytest.mark.parametrize(("rival_m", "skill"), [(1.1, "pass"), (0.9, "clear")])
+def test_marked_mate_gets_no_pass(rival_m: float, skill: str) -> None:
+    behind = robot("", NEAR.place.x_m + rival_m, NEAR.place.y_m)
+    danger = view(
+        PASSER._replace(place=Point(-4.5, 0.0)), ball(-4.17, 0.0), (agreed(NEAR),), (robot("", -3.4, -0.4), behind)
+    )
+    assert play(Tactics(FIELD), danger, 0.5)[-1].skill == skill
+
+
 def test_mate_that_does_not_answer_in_time_is_not_asked_again() -> None:
     tactics = Tactics(FIELD)
     orders = play(tactics, pressed(NEAR), ANSWER_S + 2 * TICK_S)
