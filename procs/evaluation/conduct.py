@@ -78,21 +78,38 @@ def _taken(piece: Piece) -> list[bool]:
 
 
 def _passes(piece: Piece) -> list[bool]:
-    """Returns for each pass whether a mate had the ball in its mouth for a while before another robot touched it."""
+    """Returns for each pass whether a mate had the ball in its mouth for a while before another robot touched it.
+
+    A pass of which the piece does not show the end is left out, as is one that a foul elsewhere interrupts.
+    """
     controlled = []
     skills, kickers = piece.by_robot.get("skill_status", {}), piece.by_robot.get("kicker_state", {})
     for tick, events in piece.events.items():
         for event in events:
             running = skills.get(event.robot, {}).get(tick - 1)
             if event.kind == match_event_t.KICK and running and running.skill == "pass":
-                controlled.append(_receiver(piece, tick, event.robot, kickers) != "")
+                receiver = _receiver(piece, tick, event.robot, kickers)
+                if receiver is not None:
+                    controlled.append(receiver != "")
     return controlled
 
 
-def _receiver(piece: Piece, kicked: int, passer: str, kickers: dict[str, dict[int, kicker_state_t]]) -> str:
-    """Returns the mate that controls a pass; empty if a rival touches the ball first, or no robot does."""
+def _is_in_field(piece: Piece, tick: int) -> bool:
+    truth = piece.truth[tick]
+    return piece.measures.in_field(truth.ball_x_m, truth.ball_y_m)
+
+
+def _receiver(piece: Piece, kicked: int, passer: str, kickers: dict[str, dict[int, kicker_state_t]]) -> str | None:
+    """Returns the mate that controls a pass; empty if a rival touches the ball first, or no robot does.
+
+    None if the piece ends before that is known, or the referee stops the game while the ball is still in the field.
+    """
     held: dict[str, int] = {}
     for tick in range(kicked + 1, kicked + round(_FLIGHT_S / piece.period_s)):
+        if tick not in piece.truth:
+            return None
+        if tick in piece.game and piece.game[tick].stopped:
+            return None if _is_in_field(piece, tick - 1) else ""
         touching = piece.touched_by(tick, 0.0) - {passer}
         if any(piece.team(robot) != piece.team(passer) for robot in touching):
             return ""

@@ -263,9 +263,10 @@ def test_restart_that_is_cut_short_does_not_count(until: int) -> None:
     assert conducted(made)["restarts taken within 7 s"].tolist() == []
 
 
-@pytest.mark.parametrize(("toucher", "controlled"), [("cyan2", True), ("magenta1", False)])
-def test_pass_is_controlled_once_a_mate_holds_the_ball(toucher: str, controlled: bool) -> None:
-    made = piece([robot("cyan1", 0.0, 0.0), robot("cyan2", 3.0, 0.0), robot("magenta1", 3.0, 1.0)])
+def passed(toucher: str, ticks: int = 200, ball_m_s: float = 0.0) -> Piece:
+    """Returns a piece with a pass from cyan1, which another robot then touches and keeps if it is cyan2."""
+    made = piece([robot("cyan1", 0.0, 0.0), robot("cyan2", 3.0, 0.0), robot("magenta1", 3.0, 1.0)], ticks, ball_m_s)
+    made.game = {tick: _playing() for tick in made.truth}
     status, holding = skill_status_t(), kicker_state_t()
     status.skill, holding.ball_held = "pass", True
     made.by_robot |= {
@@ -273,8 +274,27 @@ def test_pass_is_controlled_once_a_mate_holds_the_ball(toucher: str, controlled:
         "kicker_state": {"cyan2": dict.fromkeys(made.truth, holding), "magenta1": {}},
     }
     made.events = {FIRST + 1: [event(match_event_t.KICK, "cyan1", 4.0)]}
-    made.events |= {tick: [event(match_event_t.TOUCH, toucher)] for tick in range(FIRST + 10, FIRST + 20)}
-    assert conducted(made)["passes controlled by the receiver"].tolist() == [controlled]
+    touching = [event(match_event_t.TOUCH, toucher)] if toucher else []
+    made.events |= dict.fromkeys(range(FIRST + 10, FIRST + 20), touching)
+    return made
+
+
+@pytest.mark.parametrize(("toucher", "controlled"), [("cyan2", True), ("magenta1", False), ("", False)])
+def test_pass_is_controlled_once_a_mate_holds_the_ball(toucher: str, controlled: bool) -> None:
+    assert conducted(passed(toucher))["passes controlled by the receiver"].tolist() == [controlled]
+
+
+def test_pass_whose_end_the_piece_does_not_show_does_not_count() -> None:
+    assert conducted(passed("", ticks=40))["passes controlled by the receiver"].tolist() == []
+
+
+@pytest.mark.parametrize(("ball_m_s", "found"), [(1.0, []), (10.0, [False])])
+def test_pass_that_a_foul_interrupts_does_not_count(ball_m_s: float, found: list[bool]) -> None:
+    """A pass out of the field does."""
+    made = passed("", ball_m_s=ball_m_s)
+    for tick in list(made.truth)[30:]:
+        made.game[tick].stopped = True
+    assert conducted(made)["passes controlled by the receiver"].tolist() == found
 
 
 def test_captures_that_bounce_and_a_free_ball_are_counted() -> None:
