@@ -149,7 +149,7 @@ class Navigator(Component):
     def _within_walls(self, velocity: Velocity, place: Point) -> Velocity:
         config = self.config
         over_ground_m_s = Point(velocity.vx_m_s, velocity.vy_m_s)
-        slower = obstacles.brakes_at_walls(
+        slower = obstacles.braked_at_walls(
             over_ground_m_s, place, config.field, self._bodies, config.limits.braking_m_s2
         )
         return Velocity(*slower, velocity.omega_rad_s)

@@ -80,8 +80,8 @@ def touches_wall(place: Point, field: Field, bodies: Bodies) -> bool:
     return min(_room_m(place, field, bodies)) < _AT_WALL_M
 
 
-def brakes_at_walls(velocity_m_s: Point, place: Point, field: Field, bodies: Bodies, braking_m_s2: float) -> Point:
-    """Returns the velocity without the part that a robot at the place cannot brake before the wall."""
+def braked_at_walls(velocity_m_s: Point, place: Point, field: Field, bodies: Bodies, braking_m_s2: float) -> Point:
+    """Returns the velocity, where a robot at the place could not brake before a wall slower towards that wall."""
     vx_m_s, vy_m_s = velocity_m_s
     limits_m_s = [
         math.sqrt(2 * braking_m_s2 * max(0.0, room_m - _AT_WALL_M)) for room_m in _room_m(place, field, bodies)
