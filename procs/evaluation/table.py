@@ -176,7 +176,8 @@ def rows_of(pieces: Sequence[Samples], measures: Sequence[Measure] = MEASURES, s
     """Computes the table; the interval comes from redrawing whole pieces, as samples of a piece depend on each other.
 
     A single piece gives no interval: its limits are NaN. The interval of events that were never seen ends at the rate
-    with which seeing none has a probability of 5 %. Trials that all ended alike have Wilson's interval.
+    with which seeing none has a probability of 5 %. Trials that all ended alike, or in all pieces equally often, have
+    Wilson's interval, as redrawing gives them none.
     """
     rng = np.random.default_rng(seed)
     draws = rng.integers(len(pieces), size=(_REDRAWS, len(pieces)))
@@ -192,7 +193,7 @@ def rows_of(pieces: Sequence[Samples], measures: Sequence[Measure] = MEASURES, s
         if measure.statistic is rate and value == 0.0:
             low, high = 0.0, _NEVER / sum(float(each[:, 1].sum()) for each in samples)
         count = sum(map(len, samples))
-        if measure.statistic is share and value in (0.0, 1.0):
+        if measure.statistic is share and (value in (0.0, 1.0) or low == high):
             low, high = wilson(round(value * count), count)
         rows.append(Row(measure.name, value, low, high, count, measure.unit, measure.goal))
     return rows

@@ -102,3 +102,10 @@ def test_trials_that_all_ended_alike_have_an_interval() -> None:
     assert rows_of([lost], measures)[0].high == pytest.approx(0.793, abs=1e-3)
     both = {"won": np.array([1.0]), "known": np.array([1.0])}
     assert [(row.low, row.high) for row in rows_of([lost, both], measures)[:1]] == [(0.0, 1.0)]
+
+
+def test_pieces_with_equal_shares_have_an_interval() -> None:
+    """Redrawing pieces that are alike gives an interval without width."""
+    half = {"found": np.array([0.0, 1.0, 1.0, 0.0, 1.0])}
+    (found,) = rows_of([half, half], [Measure("found", share, "share", "")])
+    assert (found.low, found.high) == pytest.approx((0.313, 0.832), abs=1e-3)
