@@ -133,7 +133,7 @@ class Navigator(Component):
         state.arrived = state.distance_m < config.near_m and abs(turn_rad) < config.near_rad
         if way.blocked:
             state.error = navigator_state_t.OBSTRUCTED
-        # Wheels that turn a robot which the wall holds back report a turn, and the robot drives in wrong directions.
+        # Where the wall keeps a robot from turning, its wheels report a turn all the same, and the robot loses its way.
         at_wall = obstacles.touches_wall(Point(model.x_m, model.y_m), config.field, self._bodies)
         wanted = self._velocity(target, way, 0.0 if at_wall else turn_rad)
         if target.avoid_robots:

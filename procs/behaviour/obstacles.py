@@ -24,7 +24,7 @@ _PASSING_M = 0.1  # room beside a robot that is passed ...
 _UNSURE_M = 0.15  # ... and at most so much more for the deviation of its place
 _OFF_WALL_M = 0.1  # room between a robot at its target and the wall
 _OFF_GOAL_M = 0.5  # beside the mouth of a goal, robots keep before its line, too
-_AT_WALL_M = 0.05  # a robot at the wall may be believed so far inside it or before it
+_AT_WALL_M = 0.05  # error of the believed place of a robot at the wall
 _DRIVES_M_S = 0.3  # a slower mate plays the ball or stays at its place, and does not give way
 
 
@@ -70,9 +70,7 @@ def _is_before_goal(y_m: float, field: Field) -> bool:
 
 def inside_walls(place: Point, field: Field, bodies: Bodies) -> bool:
     """Returns whether a robot's middle can be at the place, as the wall around the field allows."""
-    robot_m = bodies.robot_radius_m
-    x_m, y_m = field.half_length_m + field.border_m - robot_m, field.half_width_m + field.border_m - robot_m
-    return abs(place.x_m) < x_m + _AT_WALL_M and abs(place.y_m) < y_m + _AT_WALL_M
+    return min(_room_m(place, field, bodies)) > -_AT_WALL_M
 
 
 def touches_wall(place: Point, field: Field, bodies: Bodies) -> bool:
@@ -81,7 +79,7 @@ def touches_wall(place: Point, field: Field, bodies: Bodies) -> bool:
 
 
 def braked_at_walls(velocity_m_s: Point, place: Point, field: Field, bodies: Bodies, braking_m_s2: float) -> Point:
-    """Returns the velocity, where a robot at the place could not brake before a wall slower towards that wall."""
+    """Returns the velocity, limited towards each wall to what a robot at the place can still brake."""
     vx_m_s, vy_m_s = velocity_m_s
     limits_m_s = [
         math.sqrt(2 * braking_m_s2 * max(0.0, room_m - _AT_WALL_M)) for room_m in _room_m(place, field, bodies)
@@ -91,7 +89,7 @@ def braked_at_walls(velocity_m_s: Point, place: Point, field: Field, bodies: Bod
 
 
 def _room_m(place: Point, field: Field, bodies: Bodies) -> tuple[float, float, float, float]:
-    """Returns the room of a robot to the walls in the west, east, south and north."""
+    """Returns the room of a robot to the walls in the west, east, south and north; negative beyond a wall."""
     x_m = field.half_length_m + field.border_m - bodies.robot_radius_m
     y_m = field.half_width_m + field.border_m - bodies.robot_radius_m
     return x_m + place.x_m, x_m - place.x_m, y_m + place.y_m, y_m - place.y_m

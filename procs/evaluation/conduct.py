@@ -88,9 +88,9 @@ def _passes(piece: Piece) -> list[bool]:
         for event in events:
             running = skills.get(event.robot, {}).get(tick - 1)
             if event.kind == match_event_t.KICK and running and running.skill == "pass":
-                receiver = _receiver(piece, tick, event.robot, kickers)
-                if receiver is not None:
-                    controlled.append(receiver != "")
+                outcome = _is_controlled(piece, tick, event.robot, kickers)
+                if outcome is not None:
+                    controlled.append(outcome)
     return controlled
 
 
@@ -99,8 +99,10 @@ def _is_in_field(piece: Piece, tick: int) -> bool:
     return piece.measures.in_field(truth.ball_x_m, truth.ball_y_m)
 
 
-def _receiver(piece: Piece, kicked: int, passer: str, kickers: dict[str, dict[int, kicker_state_t]]) -> str | None:
-    """Returns the mate that controls a pass; empty if a rival touches the ball first, or no robot does.
+def _is_controlled(
+    piece: Piece, kicked: int, passer: str, kickers: dict[str, dict[int, kicker_state_t]]
+) -> bool | None:
+    """Returns whether a mate controls a pass; no mate does if a rival touches the ball first, or no robot.
 
     None if the piece ends before that is known, or the referee stops the game while the ball is still in the field.
     """
@@ -109,13 +111,13 @@ def _receiver(piece: Piece, kicked: int, passer: str, kickers: dict[str, dict[in
         if tick not in piece.truth:
             return None
         if tick in piece.game and piece.game[tick].stopped:
-            return None if _is_in_field(piece, tick - 1) else ""
+            return None if _is_in_field(piece, tick - 1) else False
         touching = piece.touched_by(tick, 0.0) - {passer}
         if any(piece.team(robot) != piece.team(passer) for robot in touching):
-            return ""
+            return False
         for robot in sorted(touching):
             state = kickers.get(robot, {}).get(tick)
             held[robot] = held.get(robot, 0) + 1 if state and state.ball_held else 0
             if held[robot] * piece.period_s >= _CONTROL_S:
-                return robot
-    return ""
+                return True
+    return False

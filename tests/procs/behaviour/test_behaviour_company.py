@@ -86,7 +86,7 @@ def test_agent_without_a_radio_leaves_the_ball_to_a_nearer_mate(name: str, role:
 
 @pytest.mark.parametrize(("x_m", "role"), [(0.0, DEFENDER), (-9.5, ATTACKER)])
 def test_ball_unseen_at_a_set_piece_lies_on_its_spot(x_m: float, role: str) -> None:
-    """A robot in the middle of the field once took itself for the nearest to a ball that nobody saw in the corner."""
+    """A robot in midfield once believed that it was the nearest to a ball in the corner, which no robot saw."""
     game = game_state_t(state=game_state_t.CORNER_KICK, state_team=game_state_t.TEAM_MAGENTA, stopped=True)
     game.ball_x_m, game.ball_y_m = -10.8, 6.8
     world, bench = Bench(WorldModel, "cyan4/world_model"), Bench(Agent, "cyan4/agent")

@@ -17,6 +17,7 @@ TICK_S = 0.05
 PLAY = Game(State.PLAY, stopped=False)
 RIVAL = robot("", -1.2, -0.2)
 PASSER, NEAR, FAR = robot("cyan2", -2.33, 0.0), robot("cyan3", 3.0, 3.0), robot("cyan4", 3.0, -4.0)
+MOVING = agreed(NEAR)._replace(velocity_m_s=Point(0.0, 1.0))
 HELD = ball(-2.0, 0.0)
 ROLLING = ball(0.0, 0.0, 2.0, 0.0)
 
@@ -44,15 +45,13 @@ def test_pass_is_announced_and_played_once_accepted() -> None:
 
 def test_passer_waits_until_the_receiver_has_stopped() -> None:
     tactics = Tactics(FIELD)
-    moving = agreed(NEAR)._replace(velocity_m_s=Point(0.0, 1.0))
-    orders = play(tactics, pressed(moving), 0.4)
+    orders = play(tactics, pressed(MOVING), 0.4)
     assert orders[-1].skill == "aim"
     assert play(tactics, pressed(agreed(NEAR)), 2 * TICK_S)[-1].skill == "pass"
 
 
 def test_passer_does_not_wait_long_for_a_receiver_that_drives_on() -> None:
-    moving = agreed(NEAR)._replace(velocity_m_s=Point(0.0, 1.0))
-    orders = play(Tactics(FIELD), pressed(moving), 0.7)
+    orders = play(Tactics(FIELD), pressed(MOVING), 0.7)
     assert (orders[5].skill, orders[-1].skill) == ("aim", "pass")
 
 
