@@ -14,6 +14,7 @@ from procs.model.estimation import linear_sum_assignment
 from procs.model.frames import Flags, Floats, Indices
 from procs.model.robot import ROBOT
 from procs.world_model.batch import Innovation, corrected, innovation_of, inverted, places_at, seen_at
+from procs.world_model.contact import RobotRow
 from procs.world_model.team import PlaceRow
 
 _STATES = 6
@@ -60,6 +61,16 @@ class RobotTracks:
     def sure(self) -> Indices:
         """Indices of the tracks with more than one sighting; a single sighting may be a ghost."""
         return np.flatnonzero(self._sightings > 1)
+
+    def rows_after(self, duration_s: float) -> list[RobotRow]:
+        """Returns where the robots will be, as far as the ball may meet them."""
+        if not len(self):
+            return []
+        variances_m2 = (self._p[:, 0, 0] + self._p[:, 1, 1]) / 2
+        return [
+            (x_m + vx_m_s * duration_s, y_m + vy_m_s * duration_s, vx_m_s, vy_m_s, place_m2)
+            for (x_m, y_m, vx_m_s, vy_m_s), place_m2 in zip(self.states.tolist(), variances_m2.tolist(), strict=True)
+        ]
 
     def predict(self, duration_s: float, timeout_s: float) -> None:
         """Moves all tracks on by `duration_s`; drops those without a sighting for `timeout_s`."""

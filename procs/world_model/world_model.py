@@ -1,16 +1,13 @@
 """World model of a robot: itself, the ball, mates and opponents; and its messages to the team.
 
-Sources: the ball from its own mouth, its own camera, then the team's cameras (`ball_tracker`); mates from their own
+Sources: the ball from its own mouth, its own camera, then the team's cameras (`ball_follower`); mates from their own
 messages; opponents from obstacles that the robot and its mates see and that are not robots of the team. A mate that
 does not know its place is left out. While the robot itself does not know its place, only its mates' sightings count.
 """
 
 from collections.abc import Sequence
 
-import numpy as np
-from pydantic import Field as Setting
-
-from fwk import Clock, Component, Config, Reads, Writes, channel
+from fwk import Clock, Component, Reads, Writes, channel
 from lcmtypes.robot import battery_state_t, kicker_state_t, odometry_t
 from lcmtypes.soccer import (
     ball_percept_t,
@@ -23,73 +20,21 @@ from lcmtypes.soccer import (
     team_message_t,
     world_model_t,
 )
-from procs.model.ball import BALL, BallModel
-from procs.model.field import Field
-from procs.model.frames import Floats
-from procs.model.geometry import plausible
-from procs.model.robot import ABSENT, PLAYERS, ROBOT, TEAM_NUMBERS, Players, RobotModel, player_of
+from procs.model.robot import ABSENT, TEAM_NUMBERS, player_of
 from procs.model.units import US_PER_S
-from procs.world_model.ball_track import Sighting
-from procs.world_model.ball_tracker import BallTracker
-from procs.world_model.contact import Robots
-from procs.world_model.kicks import Kicks
-from procs.world_model.opponents import OpponentSettings, strangers
+from procs.world_model.ball_follower import BallFollower, BallNews
+from procs.world_model.opponents import strangers
 from procs.world_model.own_view import OwnView
-from procs.world_model.placed_ball import PlacedBall
 from procs.world_model.possession import holder_of
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
+from procs.world_model.settings import STALE_S, WorldModelConfig
 from procs.world_model.team import Mate, PlaceRow, Places, Team
-from procs.world_model.told import ball_of, held_by, mate_of, obstacles_of
-from procs.world_model.walls import Walls
+from procs.world_model.told import mate_of, obstacles_of
 from procs.world_model.world_messages import fill_ball, fill_kick, fill_plan, fill_team_message, fill_world_model
 
-_STALE_S = 0.5  # older sightings of mates are not used, and older words of the own kicker
 _BEHIND_WALL_M = 1.0  # a mate that believes itself further outside is lost
 _RESTART_S = 2.0  # an agent that is silent for longer does not play
-_IN_MOUTH_M2 = np.eye(2) * 0.03**2
-"""Covariance of a ball somewhere in the mouth."""
-
-
-class WorldModelConfig(Config):
-    """Settings of the world model."""
-
-    field: Field = Field()
-    """Measures of the field."""
-    ball_timeout_s: float = Setting(default=2.0, gt=0.0)
-    """The ball is unknown after that time without a sighting."""
-    players: Players = dict(PLAYERS)
-    """Team and number of each robot."""
-    ball: BallModel = BALL
-    """Size and friction of the ball."""
-    robot: RobotModel = ROBOT
-    """Geometry of all robots."""
-    opponent_timeout_s: float = Setting(default=0.6, gt=0.0)
-    """An opponent is forgotten after that time without a sighting."""
-    mate_timeout_s: float = Setting(default=5.0, gt=0.0)
-    """A mate is forgotten after that time without a message."""
-    mate_radius_m: float = Setting(default=0.5, gt=0.0)
-    """An obstacle this near to a mate is that mate; further away only if it was seen so poorly."""
-    obstacle_deviation_m: float = Setting(default=0.4, gt=0.0)
-    """Obstacles seen with a larger standard deviation are not used."""
-    border_m: float = Setting(default=0.7, ge=0.0)
-    """Obstacles further outside the field than that are not robots of the match."""
-    use_team_sight: bool = True
-    """Use the sightings of mates."""
-    use_capture_times: bool = True
-    """Let a sighting count at the time of its exposure; otherwise, to see what that brings, when it arrives."""
-    use_ball_velocity: bool = True
-    """Tell the velocity of the ball; otherwise, to see what that brings, the ball always seems to rest."""
-    message_period_s: float = Setting(default=0.1, gt=0.0)
-    """Time from one message to the team to the next; messages go with the nearest frame of the camera."""
-    sight_correlation: float = Setting(default=1.0, ge=1.0)
-    """Frames that share one error of the camera; the filters widen sightings by it."""
-    shake_s_m: float = Setting(default=0.7, ge=0.0)
-    """Growth of the camera's deviation with speed, as a share of the percepts' deviation for each m/s."""
-    pose_correlation: float = Setting(default=2.0, ge=1.0)
-    """Frames that share one error of the own pose."""
-    team_correlation: float = Setting(default=1.0, ge=1.0)
-    """Messages of a mate that share one error."""
 
 
 class WorldModel(Component):
@@ -114,20 +59,18 @@ class WorldModel(Component):
 
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
-        self._ball = BallTracker(self.config.ball)
+        self._ball = BallFollower(self._robot, self.config)
         self._opponents = RobotTracks()
         self._silent = RobotTracks()  # mates that do not tell their places
         self._apply_settings()
         self._team = Team()
         self._view: OwnView | None = None
-        self._held = self._holds = False
+        self._holds = False
         self._kicker_us = self._role_us = self.clock.now_us
         """Time of the newest message of the own kicker, and of the own agent."""
-        self._kicks = Kicks()
-        self._placed = PlacedBall()
         self._last_us = 0
         self._sent_us = -US_PER_S  # the first message is due at once
-        self._untold_ball = self._untold_obstacles = Seen.NOTHING  # own sightings since the last message
+        self._untold_obstacles = Seen.NOTHING  # own sightings since the last message
 
     def loop(self) -> None:
         config, now_s = self.config, self.clock.now_s
@@ -139,7 +82,7 @@ class WorldModel(Component):
         if self.role.refreshed:
             self._role_us = self.clock.now_us
         # A kicker that has fallen silent does not know whether the ball is in the mouth.
-        self._holds = bool(self.kicker_state.value.ball_held) and self.clock.since_s(self._kicker_us) <= _STALE_S
+        self._holds = bool(self.kicker_state.value.ball_held) and self.clock.since_s(self._kicker_us) <= STALE_S
         view = OwnView(self.pose.value, self.odometry.value, known, config.shake_s_m, self._view, passed_s)
         self._view = view
         told = self._listen(now_s)
@@ -149,7 +92,7 @@ class WorldModel(Component):
         self._follow_ball(view, places, told, passed_s)
         self._follow_robots(view, team, places, len(mates), told, passed_s)
         robots = self._opponents, self._silent
-        fill_world_model(self.world_model.value, view, self._ball, mates, places, *robots, now_s)
+        fill_world_model(self.world_model.value, view, self._ball.tracker, mates, places, *robots, now_s)
         holder = holder_of(self.world_model.value, self._robot, self._holds, mates, now_s, self._mouth_m)
         self.world_model.value.ball_holder = holder
         if not config.use_ball_velocity:
@@ -162,14 +105,12 @@ class WorldModel(Component):
         self._apply_settings()
 
     def _apply_settings(self) -> None:
-        if self._ball.ball != self.config.ball:
-            self._ball = BallTracker(self.config.ball)  # another ball, which no robot has seen yet
-        self._walls = Walls.of(self.config.field, self.config.ball)
-        self._rules = self._opponent_settings()
+        self._ball.apply(self.config)
+        self._rules = self.config.opponent_settings
         self._opponents.robot_width_m = self._silent.robot_width_m = 2 * self.config.robot.radius_m
         player = player_of(self._robot, self.config.players)
         self._own_team = TEAM_NUMBERS[player.team] if player else 0
-        self._mouth_m = self.config.robot.held_ball_m(self.config.ball)  # from the robot's middle to a held ball's
+        self._mouth_m = self.config.robot.held_ball_m(self.config.ball)
 
     def _listen(self, now_s: float) -> list[tuple[team_message_t, Mate]]:
         """Returns the messages of mates that arrived in this tick and are not older than known ones."""
@@ -197,88 +138,25 @@ class WorldModel(Component):
     def _follow_ball(
         self, view: OwnView, team: Sequence[PlaceRow], told: list[tuple[team_message_t, Mate]], passed_s: float
     ) -> None:
-        config, kicker = self.config, self.kicker_state.value
-        has_kicker = self.kicker_state.has_value
-        kicked = self._kicks.own(kicker, view, self._mouth_m, passed_s) if has_kicker else None
+        percept = self.ball_percept.value if self.ball_percept.refreshed else None
+        news = BallNews(
+            now_us=self.clock.now_us,
+            passed_s=passed_s,
+            iteration_s=self.clock.iteration_s,
+            holds=self._holds,
+            kicker=self.kicker_state.value if self.kicker_state.has_value else None,
+            game=self.game_state.value if self.game_state.has_value else None,
+            percept=percept,
+            told=told,
+        )
+        others = (*self._opponents.rows_after(passed_s), *self._silent.rows_after(passed_s))
+        robots = [*[(*row[:4], (row[4] + row[7]) / 2) for row in team], *others]
+        kicked = self._ball.follow(news, view, robots)
+        message = self.team_message.value
         if kicked:
-            fill_kick(self.team_message.value, kicked, kicker.kicks, self.clock.now_us)
-        kicks = self._kicks.of_mates(told, self.clock.now_us, self._mouth_m)
-        for kick in [kicked, *kicks] if kicked else kicks:
-            self._ball.kick(kick.velocity_m_s, kick.age_s - passed_s, kick.mouth, kick.lift_m_s)
-        robots = self._robots_near(team, passed_s)
-        wall = float(self._ball.known and self._walls.near(self._ball.track, passed_s))
-        self._ball.advance(passed_s, config.ball_timeout_s, contact=wall, robots=robots, walls=self._walls)
-        if self.game_state.has_value:
-            self._take_placed_ball()
-        if self._holds and view.localized and not kicked:
-            self._take_held_ball(view)
-        self._held = self._holds
-        if self.ball_percept.refreshed:
-            self._look_for_ball(view, self.ball_percept.value)
-        self._take_mates_ball(told)
-
-    def _take_placed_ball(self) -> None:
-        """Takes the ball that the crew has put down: it acts in the tick after the state of the game says so."""
-        spot_m = self._placed.spot_m(self.game_state.value, self._ball.known)
-        if spot_m is not None:
-            self._ball.put_down(spot_m)
-
-    def _take_mates_ball(self, told: list[tuple[team_message_t, Mate]]) -> None:
-        """Takes the ball that mates see, and the one in the mouth of a mate."""
-        config = self.config
-        for message, mate in told:
-            seen = ball_of(message).widened(config.team_correlation, 1.0)
-            age_s = self._age_s(message.ball_capture_us or message.header.time_us)
-            self._see(self._sightings(mate.name, seen, message.ball_z_m, mate.position_m, age_s))
-            told_s = self.clock.since_s(message.header.time_us)
-            kicked_just_now = 0.0 <= (message.header.time_us - message.kick_us) / US_PER_S < self.clock.iteration_s
-            if mate.holds_ball and mate.localized and told_s <= _STALE_S and not kicked_just_now:
-                self._ball.hold(mate.name, *held_by(mate, self._mouth_m), told_s)
-
-    def _take_held_ball(self, view: OwnView) -> None:
-        """Takes the ball that the light barrier sees: its place and, unless it is still rolling in, its velocity."""
-        state, covariance = view.held_ball(self._mouth_m)
-        if not self._held and self._ball.known and view.rolls_in(self._ball.track.state, state):
-            self._ball.see(Sighting(self._robot, True, state[:2], covariance[:2, :2] + _IN_MOUTH_M2))
-        else:
-            self._ball.hold(self._robot, state, covariance)
-
-    def _robots_near(self, team: Sequence[PlaceRow], passed_s: float) -> Robots | None:
-        """Returns the robots that may touch the ball in a tick, as they are at its end."""
-        if not self._ball.known:
-            return None
-        rows = [(*row[:4], (row[4] + row[7]) / 2) for row in team]
-        for tracks in filter(len, (self._opponents, self._silent)):
-            variances_m2 = (tracks.covariances[:, 0, 0] + tracks.covariances[:, 1, 1]) / 2
-            for (x_m, y_m, vx_m_s, vy_m_s), place_m2 in zip(tracks.states.tolist(), variances_m2.tolist(), strict=True):
-                rows.append((x_m + vx_m_s * passed_s, y_m + vy_m_s * passed_s, vx_m_s, vy_m_s, place_m2))
-        return Robots.near(self._ball.track, rows, self._mouth_m, self.config.robot.height_m)
-
-    def _look_for_ball(self, view: OwnView, percept: ball_percept_t) -> None:
-        """Takes the newest percept of the ball, and keeps its likeliest place for the next message to the team."""
-        config, message, age_s = self.config, self.team_message.value, self._age_s(percept.capture_us)
-        seen = self._untold_ball = view.ball(percept, age_s)
-        message.ball_capture_us, message.ball_z_m = percept.capture_us or self.clock.now_us, percept.z_m
-        sightings = []
-        for candidate, height_m in ((seen, percept.z_m), *view.other_balls(percept, age_s)):
-            widened = candidate.widened(config.sight_correlation, config.pose_correlation)
-            sightings += self._sightings(self._robot, widened, height_m, view.pose[:2], age_s)
-        self._see(sightings)
-
-    def _sightings(self, robot: str, seen: Seen, height_m: float, observer_m: Floats, age_s: float) -> list[Sighting]:
-        """Returns a sighting of the ball (0 or 1), unless it is too old, from the future or impossible."""
-        if not (0.0 <= age_s <= _STALE_S and plausible(height_m)):
-            return []
-        own = robot == self._robot
-        return [
-            Sighting(robot, own, position_m, covariance_m2, age_s, height_m, observer_m)
-            for position_m, covariance_m2 in zip(seen.positions_m, seen.covariances_m2, strict=True)
-        ]
-
-    def _see(self, sightings: list[Sighting]) -> None:
-        """Hands what may be the ball in one frame to the tracker, the likeliest first."""
-        if sightings:
-            self._ball.see(*sightings)
+            fill_kick(message, kicked, self.kicker_state.value.kicks, self.clock.now_us)
+        if percept:
+            message.ball_capture_us, message.ball_z_m = percept.capture_us or self.clock.now_us, percept.z_m
 
     def _follow_robots(
         self,
@@ -298,7 +176,7 @@ class WorldModel(Component):
             tracks.predict(passed_s, config.opponent_timeout_s)
         if self.obstacle_percepts.refreshed:
             percepts = self.obstacle_percepts.value
-            age_s = self._age_s(percepts.capture_us)
+            age_s = config.age_s(percepts.capture_us, self.clock.now_us)
             known, own = team.first(mates), self._own_team
             seen = strangers(view.obstacles(percepts, age_s, own), known, now_s - age_s, rules)
             self._untold_obstacles = seen
@@ -309,8 +187,8 @@ class WorldModel(Component):
             seen = seen.widened(config.sight_correlation, config.pose_correlation)
             self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
         for message, _ in told:
-            age_s = self._age_s(message.obstacles_capture_us or message.header.time_us)
-            if 0.0 <= age_s <= _STALE_S:
+            age_s = config.age_s(message.obstacles_capture_us or message.header.time_us, self.clock.now_us)
+            if 0.0 <= age_s <= STALE_S:
                 seen = obstacles_of(message).widened(config.team_correlation, 1.0)
                 seen = strangers(seen, team, now_s - age_s, rules)
                 self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
@@ -322,7 +200,7 @@ class WorldModel(Component):
         tick for it; from then on messages keep its pace, and mates hear of a sighting as soon as they can.
         """
         caught_or_lost = self.team_message.value.ball_held != self._holds
-        if caught_or_lost or self._kicks.untold:
+        if caught_or_lost or self._ball.kicks.untold:
             return True  # mates have to know at once
         half_tick_s = self.clock.iteration_s / 2
         passed_s = self.clock.since_s(self._sent_us) + half_tick_s
@@ -339,28 +217,15 @@ class WorldModel(Component):
         role = self.role.value if plays else role_t(role=ABSENT)
         message.role, message.intention, message.agreement = role.role, role.intention, role.agreement
         message.ball_held = self._holds
-        fill_team_message(message, view, self._untold_ball, self._untold_obstacles)
+        fill_team_message(message, view, self._ball.untold, self._untold_obstacles)
         fill_ball(message, self.world_model.value.ball, self.ball_percept.value.confidence)
-        drives = self.drive_target.has_value and self.clock.since_s(self.drive_target.header.time_us) <= _STALE_S
+        drives = self.drive_target.has_value and self.clock.since_s(self.drive_target.header.time_us) <= STALE_S
         fill_plan(
             message,
             self.drive_target.value if drives else None,
             self.battery_state.value if self.battery_state.has_value else None,
         )
-        self._untold_ball = self._untold_obstacles = Seen.NOTHING
+        self._ball.untold = self._untold_obstacles = Seen.NOTHING
         self._sent_us = self.clock.now_us
-        self._kicks.note_message()
+        self._ball.kicks.note_message()
         self.team_message.write()
-
-    def _age_s(self, capture_us: int) -> float:
-        """Returns the time since an exposure; 0 stands for an exposure in this tick."""
-        return self.clock.since_s(capture_us) if capture_us and self.config.use_capture_times else 0.0
-
-    def _opponent_settings(self) -> OpponentSettings:
-        config = self.config
-        return OpponentSettings(
-            half_length_m=config.field.half_length_m + config.border_m,
-            half_width_m=config.field.half_width_m + config.border_m,
-            deviation_m=config.obstacle_deviation_m,
-            mate_radius_m=config.mate_radius_m,
-        )

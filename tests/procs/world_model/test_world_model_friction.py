@@ -51,12 +51,12 @@ def test_another_ball_in_the_settings_begins_a_new_track() -> None:
         robot.sense(np.array((2.0, 0.0)), [])
         robot.bench.iterate()
     component = robot.bench.component
-    track = component._ball
+    track = component._ball.tracker
     component.config_changed()
-    assert component._ball is track, "other settings leave the ball as it is"
+    assert component._ball.tracker is track, "other settings leave the ball as it is"
     component.config.ball = BALL.model_copy(update={"sliding_m_s2": 2.0})
     component.config_changed()
-    assert component._ball.ball.sliding_m_s2 == 2.0
+    assert component._ball.tracker.ball.sliding_m_s2 == 2.0
     robot.sense(np.array((2.0, 0.0)), [])
     robot.bench.iterate()
     assert robot.world.ball.x_m == pytest.approx(2.0, abs=0.1)

@@ -1,0 +1,152 @@
+"""Feeds the ball tracker of a robot: kicks, the crew's spot, the own mouth, the own camera, then the mates."""
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from lcmtypes.robot import kicker_state_t
+from lcmtypes.soccer import ball_percept_t, game_state_t, team_message_t
+from procs.model.frames import Floats
+from procs.model.geometry import plausible
+from procs.model.units import US_PER_S
+from procs.world_model.ball_track import Sighting
+from procs.world_model.ball_tracker import BallTracker
+from procs.world_model.contact import RobotRow, Robots
+from procs.world_model.kicks import Kick, Kicks
+from procs.world_model.own_view import OwnView
+from procs.world_model.placed_ball import PlacedBall
+from procs.world_model.seen import Seen
+from procs.world_model.settings import STALE_S, WorldModelConfig
+from procs.world_model.team import Mate
+from procs.world_model.told import ball_of, held_by
+from procs.world_model.walls import Walls
+
+_IN_MOUTH_M2 = np.eye(2) * 0.03**2
+"""Covariance of a ball somewhere in the mouth."""
+
+
+class BallNews(NamedTuple):
+    """What a tick brings about the ball."""
+
+    now_us: int
+    """Logical time."""
+    passed_s: float
+    """Time since the last tick."""
+    iteration_s: float
+    """Usual time from one tick to the next."""
+    holds: bool
+    """Whether the robot has the ball in its mouth."""
+    kicker: kicker_state_t | None
+    """Newest state of the own kicker; None before the first."""
+    game: game_state_t | None
+    """Newest state of the game; None before the first."""
+    percept: ball_percept_t | None
+    """Percept of the own camera, if there is a new one."""
+    told: Sequence[tuple[team_message_t, Mate]]
+    """New messages of mates."""
+
+
+class BallFollower:
+    """The ball as a robot knows it; call `follow` once a tick.
+
+    Args:
+        robot: name of the robot.
+        config: settings.
+    """
+
+    def __init__(self, robot: str, config: WorldModelConfig) -> None:
+        self.tracker = BallTracker(config.ball)
+        """Track of the ball."""
+        self.kicks = Kicks()
+        """Kicks of the robot and its mates."""
+        self.untold = Seen.NOTHING
+        """Likeliest place of the ball in the newest own percept (0 or 1), until a message to the team has told it."""
+        self._robot = robot
+        self._placed = PlacedBall()
+        self._held = False
+        self.apply(config)
+
+    def apply(self, config: WorldModelConfig) -> None:
+        """Takes other settings; no robot has seen another ball yet."""
+        if self.tracker.ball != config.ball:
+            self.tracker = BallTracker(config.ball)
+        self._config = config
+        self._walls = Walls.of(config.field, config.ball)
+        self._mouth_m = config.robot.held_ball_m(config.ball)  # from the robot's middle to a held ball's
+
+    def follow(self, news: BallNews, view: OwnView, robots: Iterable[RobotRow]) -> Kick | None:
+        """Takes what a tick brings; returns the robot's own kick, if it has kicked.
+
+        Args:
+            news: what the tick brings.
+            view: what the robot knows of itself.
+            robots: all robots at the end of the tick.
+        """
+        passed_s, tracker = news.passed_s, self.tracker
+        kicked = self.kicks.own(news.kicker, view, self._mouth_m, passed_s) if news.kicker else None
+        kicks = self.kicks.of_mates(news.told, news.now_us, self._mouth_m)
+        for kick in [kicked, *kicks] if kicked else kicks:
+            tracker.kick(kick.velocity_m_s, kick.age_s - passed_s, kick.mouth, kick.lift_m_s)
+        near = Robots.near(tracker.track, robots, self._mouth_m, self._config.robot.height_m) if tracker.known else None
+        wall = float(tracker.known and self._walls.near(tracker.track, passed_s))
+        tracker.advance(passed_s, self._config.ball_timeout_s, contact=wall, robots=near, walls=self._walls)
+        if news.game:
+            self._take_placed_ball(news.game)
+        if news.holds and view.localized and not kicked:
+            self._take_held_ball(view)
+        self._held = news.holds
+        if news.percept:
+            self._look_for_ball(news.percept, view, self._config.age_s(news.percept.capture_us, news.now_us))
+        self._take_mates_ball(news)
+        return kicked
+
+    def _take_placed_ball(self, game: game_state_t) -> None:
+        """Takes the ball that the crew has put down: it acts in the tick after the state of the game says so."""
+        spot_m = self._placed.spot_m(game, self.tracker.known)
+        if spot_m is not None:
+            self.tracker.put_down(spot_m)
+
+    def _take_held_ball(self, view: OwnView) -> None:
+        """Takes the ball that the light barrier sees: its place and, unless it is still rolling in, its velocity."""
+        state, covariance = view.held_ball(self._mouth_m)
+        if not self._held and self.tracker.known and view.rolls_in(self.tracker.track.state, state):
+            self.tracker.see(Sighting(self._robot, True, state[:2], covariance[:2, :2] + _IN_MOUTH_M2))
+        else:
+            self.tracker.hold(self._robot, state, covariance)
+
+    def _look_for_ball(self, percept: ball_percept_t, view: OwnView, age_s: float) -> None:
+        """Takes a percept of the ball, and keeps its likeliest place for the next message to the team."""
+        config = self._config
+        seen = self.untold = view.ball(percept, age_s)
+        sightings = []
+        for candidate, height_m in ((seen, percept.z_m), *view.other_balls(percept, age_s)):
+            widened = candidate.widened(config.sight_correlation, config.pose_correlation)
+            sightings += self._sightings(self._robot, widened, height_m, view.pose[:2], age_s)
+        self._see(sightings)
+
+    def _take_mates_ball(self, news: BallNews) -> None:
+        """Takes the ball that mates see, and the one in the mouth of a mate."""
+        for message, mate in news.told:
+            seen = ball_of(message).widened(self._config.team_correlation, 1.0)
+            age_s = self._config.age_s(message.ball_capture_us or message.header.time_us, news.now_us)
+            self._see(self._sightings(mate.name, seen, message.ball_z_m, mate.position_m, age_s))
+            told_s = (news.now_us - message.header.time_us) / US_PER_S
+            kicked_just_now = 0.0 <= (message.header.time_us - message.kick_us) / US_PER_S < news.iteration_s
+            if mate.holds_ball and mate.localized and told_s <= STALE_S and not kicked_just_now:
+                self.tracker.hold(mate.name, *held_by(mate, self._mouth_m), told_s)
+
+    def _sightings(self, robot: str, seen: Seen, height_m: float, observer_m: Floats, age_s: float) -> list[Sighting]:
+        """Returns a sighting of the ball (0 or 1), unless it is too old, from the future or impossible."""
+        if not (0.0 <= age_s <= STALE_S and plausible(height_m)):
+            return []
+        own = robot == self._robot
+        return [
+            Sighting(robot, own, position_m, covariance_m2, age_s, height_m, observer_m)
+            for position_m, covariance_m2 in zip(seen.positions_m, seen.covariances_m2, strict=True)
+        ]
+
+    def _see(self, sightings: list[Sighting]) -> None:
+        """Hands what may be the ball in one frame to the tracker, the likeliest first."""
+        if sightings:
+            self.tracker.see(*sightings)

@@ -1,0 +1,68 @@
+"""Settings of the world model."""
+
+from pydantic import Field as Setting
+
+from fwk import Config
+from procs.model.ball import BALL, BallModel
+from procs.model.field import Field
+from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
+from procs.model.units import US_PER_S
+from procs.world_model.opponents import OpponentSettings
+
+STALE_S = 0.5
+"""Older sightings of mates are not used, and older words of the own kicker."""
+
+
+class WorldModelConfig(Config):
+    """Settings of the world model."""
+
+    field: Field = Field()
+    """Measures of the field."""
+    ball_timeout_s: float = Setting(default=2.0, gt=0.0)
+    """The ball is unknown after that time without a sighting."""
+    players: Players = dict(PLAYERS)
+    """Team and number of each robot."""
+    ball: BallModel = BALL
+    """Size and friction of the ball."""
+    robot: RobotModel = ROBOT
+    """Geometry of all robots."""
+    opponent_timeout_s: float = Setting(default=0.6, gt=0.0)
+    """An opponent is forgotten after that time without a sighting."""
+    mate_timeout_s: float = Setting(default=5.0, gt=0.0)
+    """A mate is forgotten after that time without a message."""
+    mate_radius_m: float = Setting(default=0.5, gt=0.0)
+    """An obstacle this near to a mate is that mate; further away only if it was seen so poorly."""
+    obstacle_deviation_m: float = Setting(default=0.4, gt=0.0)
+    """Obstacles seen with a larger standard deviation are not used."""
+    border_m: float = Setting(default=0.7, ge=0.0)
+    """Obstacles further outside the field than that are not robots of the match."""
+    use_team_sight: bool = True
+    """Use the sightings of mates."""
+    use_capture_times: bool = True
+    """Let a sighting count at the time of its exposure; otherwise, to see what that brings, when it arrives."""
+    use_ball_velocity: bool = True
+    """Tell the velocity of the ball; otherwise, to see what that brings, the ball always seems to rest."""
+    message_period_s: float = Setting(default=0.1, gt=0.0)
+    """Time from one message to the team to the next; messages go with the nearest frame of the camera."""
+    sight_correlation: float = Setting(default=1.0, ge=1.0)
+    """Frames that share one error of the camera; the filters widen sightings by it."""
+    shake_s_m: float = Setting(default=0.7, ge=0.0)
+    """Growth of the camera's deviation with speed, as a share of the percepts' deviation for each m/s."""
+    pose_correlation: float = Setting(default=2.0, ge=1.0)
+    """Frames that share one error of the own pose."""
+    team_correlation: float = Setting(default=1.0, ge=1.0)
+    """Messages of a mate that share one error."""
+
+    def age_s(self, capture_us: int, now_us: int) -> float:
+        """Returns the time since an exposure; 0 stands for an exposure in this tick."""
+        return (now_us - capture_us) / US_PER_S if capture_us and self.use_capture_times else 0.0
+
+    @property
+    def opponent_settings(self) -> OpponentSettings:
+        """What an obstacle must be like to be an opponent."""
+        return OpponentSettings(
+            half_length_m=self.field.half_length_m + self.border_m,
+            half_width_m=self.field.half_width_m + self.border_m,
+            deviation_m=self.obstacle_deviation_m,
+            mate_radius_m=self.mate_radius_m,
+        )
