@@ -8,12 +8,12 @@ from procs.model.robot import PLAYERS
 from procs.model.teams import Team, team_number
 from procs.referee import halves, restarts
 from procs.referee.cards import Card
+from procs.referee.match import Match
 from procs.referee.names import Names
 from procs.referee.reasons import REPAIRS, Reason
 from procs.referee.refusals import SET_PIECES, begun_by, why_not
 from procs.referee.restarts import Restart
 from procs.referee.sight import Sight
-from procs.referee.whistle import Whistle
 
 _USUAL = Names(PLAYERS)
 TEAMS = {"": Team.NONE, "cyan": Team.CYAN, "magenta": Team.MAGENTA}
@@ -35,33 +35,33 @@ COMMANDS = (*SET_PIECES, *GOALS, *CARDS, *REPAIRS, *HALVES, *PLAIN)
 """All commands."""
 
 
-def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: str = "", names: Names = _USUAL) -> str:
+def carry_out(match: Match, sight: Sight, name: str, team: str = "", robot: str = "", names: Names = _USUAL) -> str:
     """Carries out a command; returns why it is impossible, or an empty text. `robot` is a namespace."""
     if team not in TEAMS:
         return f"no team '{team}'; there are cyan, magenta"
-    refused = why_not(whistle, name, TEAMS[team])
+    refused = why_not(match, name, TEAMS[team])
     if refused:
         return refused
     if name in SET_PIECES:
-        return _set_piece(whistle, sight, name, TEAMS[team])
+        return _set_piece(match, sight, name, TEAMS[team])
     if name in GOALS:
-        return _goal(whistle, TEAMS[team], name == "goal")
+        return _goal(match, TEAMS[team], name == "goal")
     if name in CARDS or name in REPAIRS:
-        return _robot(whistle, sight, name, TEAMS[team], robot, names)
+        return _robot(match, sight, name, TEAMS[team], robot, names)
     if name in HALVES:
-        whistle.begin_half(HALVES[name], first=whistle.kicks_off(HALVES[name]))
+        match.begin_half(HALVES[name], first=match.kicks_off(HALVES[name]))
         return ""
-    return _simple(whistle, sight, name)
+    return _simple(match, sight, name)
 
 
-def _set_piece(whistle: Whistle, sight: Sight, name: str, team: Team) -> str:
-    state, half = SET_PIECES[name], begun_by(whistle, name)
+def _set_piece(match: Match, sight: Sight, name: str, team: Team) -> str:
+    state, half = SET_PIECES[name], begun_by(match, name)
     if not team:
         return f"a {state.words} needs a team: cyan or magenta"
     if half:
-        whistle.begin_half(half, Reason.BY_HAND, team)
+        match.begin_half(half, Reason.BY_HAND, team)
         return ""
-    place, field, ends = whistle.restart_place(sight.ball), whistle.rules.field, whistle.ends
+    place, field, ends = match.restart_place(sight.ball), match.rules.field, match.ends
     made: dict[State, Callable[[], Restart]] = {
         State.KICK_OFF: lambda: restarts.kick_off(team),
         State.FREE_KICK: lambda: restarts.after_foul(place, team.other, field),
@@ -72,40 +72,40 @@ def _set_piece(whistle: Whistle, sight: Sight, name: str, team: Team) -> str:
         ),
         State.PENALTY: lambda: restarts.penalty(team, field, ends),
     }
-    if whistle.shootout and team is not whistle.shootout.shooter:
-        if whistle.started:
-            whistle.end_penalty(scored=False)
-            if whistle.at_rest or whistle.shootout.shooter is team:
+    if match.shootout and team is not match.shootout.shooter:
+        if match.started:
+            match.end_penalty(scored=False)
+            if match.at_rest or match.shootout.shooter is team:
                 return ""
-        whistle.shootout.shooter = team
-    whistle.interrupt(made[state](), Reason.BY_HAND)
+        match.shootout.shooter = team
+    match.interrupt(made[state](), Reason.BY_HAND)
     return ""
 
 
-def _goal(whistle: Whistle, team: Team, more: bool) -> str:
+def _goal(match: Match, team: Team, more: bool) -> str:
     if not team:
         return "a goal needs a team: cyan or magenta"
-    if more and whistle.at_rest:
-        whistle.goal(team)
-    elif more and whistle.shootout:
-        whistle.end_penalty(scored=True)
+    if more and match.at_rest:
+        match.goal(team)
+    elif more and match.shootout:
+        match.end_penalty(scored=True)
     elif more:
-        whistle.goal(team)
-        whistle.interrupt(restarts.kick_off(team.other))
-    elif whistle.score[team] == 0:
+        match.goal(team)
+        match.interrupt(restarts.kick_off(team.other))
+    elif match.score[team] == 0:
         return f"{team.name.lower()} has no goal to take back"
     else:
-        whistle.score[team] -= 1
-        if whistle.shootout:
-            whistle.shootout.take_back(team)
+        match.score[team] -= 1
+        if match.shootout:
+            match.shootout.take_back(team)
     return ""
 
 
-def _robot(whistle: Whistle, sight: Sight, name: str, team: Team, namespace: str, names: Names) -> str:
+def _robot(match: Match, sight: Sight, name: str, team: Team, namespace: str, names: Names) -> str:
     there = ", ".join(names.namespaces(sight.robots)) or "none"
     if not namespace and not team:
         return f"a {name.replace('_', ' ')} needs a team or a robot; there are {there}"
-    robot = names.of_player(namespace) if namespace else _chosen(whistle, sight, name, team)
+    robot = names.of_player(namespace) if namespace else _chosen(match, sight, name, team)
     if not namespace and not robot:
         return f"no robot of {team.name.lower()} is on the field"
     if namespace and namespace not in names.namespaces(sight.robots):
@@ -113,19 +113,19 @@ def _robot(whistle: Whistle, sight: Sight, name: str, team: Team, namespace: str
     if team and team_number(robot) is not team:
         return f"{namespace} does not play for {team.name.lower()}"
     if name in CARDS:
-        whistle.card(robot, CARDS[name])
+        match.card(robot, CARDS[name])
     else:
-        whistle.take_out(robot, Reason(name))
+        match.take_out(robot, Reason(name))
     return ""
 
 
-def _chosen(whistle: Whistle, sight: Sight, name: str, team: Team) -> str:
+def _chosen(match: Match, sight: Sight, name: str, team: Team) -> str:
     """Returns the robot that a command for a team means, as a RefBox gives them; empty if none is on the field.
 
     It is the highest number on the field. The second yellow card goes to a robot that has one.
     """
-    robots = sight.without(whistle.cards.sent_off).team(team)
-    warned = [robot for robot in robots if robot in whistle.cards.warned]
+    robots = sight.without(match.cards.sent_off).team(team)
+    warned = [robot for robot in robots if robot in match.cards.warned]
     if name == "double_yellow" and warned:
         robots = warned
     elif name == "yellow_card" and len(warned) < len(robots):
@@ -133,23 +133,23 @@ def _chosen(whistle: Whistle, sight: Sight, name: str, team: Team) -> str:
     return robots[-1] if robots else ""
 
 
-def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
+def _simple(match: Match, sight: Sight, name: str) -> str:
     match name:
         case "start":
-            whistle.start(sight.without(whistle.cards.sent_off))
+            match.start(sight.without(match.cards.sent_off))
         case "stop":
-            whistle.stop(sight.ball)
+            match.stop(sight.ball)
         case "drop_ball":
-            place = whistle.restart_place(sight.ball)
-            whistle.interrupt(restarts.dropped_ball(place, whistle.rules.field), Reason.BY_HAND)
+            place = match.restart_place(sight.ball)
+            match.interrupt(restarts.dropped_ball(place, match.rules.field), Reason.BY_HAND)
         case "park":
-            whistle.park(sight.robots)
+            match.park(sight.robots)
         case "half_time":
-            whistle.end_half()
+            match.end_half()
         case "end_game":
-            whistle.end_match()
+            match.end_match()
         case "reset":
-            whistle.begin_match()
+            match.begin_match()
         case _:
             return f"no command '{name}'; there are {', '.join(COMMANDS)}"
     return ""

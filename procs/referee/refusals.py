@@ -6,7 +6,7 @@ Cards, repairs and the score can be put right at any time, and a half can begin 
 from procs.model.game_states import State
 from procs.model.teams import Team
 from procs.referee import halves
-from procs.referee.whistle import Whistle
+from procs.referee.match import Match
 
 SET_PIECES = {
     "kickoff": State.KICK_OFF,
@@ -24,40 +24,38 @@ _NEXT = {
 }
 
 
-def begun_by(whistle: Whistle, name: str) -> int | None:
+def begun_by(match: Match, name: str) -> int | None:
     """Returns the half whose first set piece has this name, in the break before it; None for other commands.
 
     A drawn match that has ended goes on in the same way.
     """
-    drawn = whistle.score[Team.CYAN] == whistle.score[Team.MAGENTA]
-    goes_on = whistle.state is State.HALF_TIME or (
-        whistle.over and drawn and whistle.half in (halves.SECOND, halves.FOURTH)
-    )
-    following = whistle.half + 1
+    drawn = match.score[Team.CYAN] == match.score[Team.MAGENTA]
+    goes_on = match.state is State.HALF_TIME or (match.over and drawn and match.half in (halves.SECOND, halves.FOURTH))
+    following = match.half + 1
     return following if goes_on and name == ("penalty" if following == halves.PENALTIES else "kickoff") else None
 
 
-def why_not(whistle: Whistle, name: str, team: Team) -> str:
+def why_not(match: Match, name: str, team: Team) -> str:
     """Returns why a command makes no sense now, and what would; an empty text if it does."""
-    if name == "start" and (not whistle.stopped or whistle.at_rest):
+    if name == "start" and (not match.stopped or match.at_rest):
         return "nothing to start: the game runs, or has a break"
-    if begun_by(whistle, name):
+    if begun_by(match, name):
         return ""
     if name in SET_PIECES or name in ("drop_ball", "half_time"):
-        if whistle.over:
+        if match.over:
             return f"no {_words(name)} after the end of the match; reset begins another match"
-        if whistle.state is State.HALF_TIME:
-            return f"no {_words(name)} in a break; {_NEXT[whistle.half]}"
-    if name == "half_time" and not halves.after(whistle.half, whistle.score, whistle.rules):
+        if match.state is State.HALF_TIME:
+            return f"no {_words(name)} in a break; {_NEXT[match.half]}"
+    if name == "half_time" and not halves.after(match.half, match.score, match.rules):
         return "no half time: no other half follows; end_game ends the match"
-    if whistle.shootout and not whistle.over:
-        return _why_not_between_penalties(whistle, name, team)
+    if match.shootout and not match.over:
+        return _why_not_between_penalties(match, name, team)
     return ""
 
 
-def _why_not_between_penalties(whistle: Whistle, name: str, team: Team) -> str:
-    assert whistle.shootout
-    shooter = whistle.shootout.shooter
+def _why_not_between_penalties(match: Match, name: str, team: Team) -> str:
+    assert match.shootout
+    shooter = match.shootout.shooter
     whose = shooter.name.lower()
     if name == "drop_ball" or (name in SET_PIECES and name != "penalty"):
         return f"no {_words(name)} while penalties decide the match; penalty team={whose} repeats the one at hand"
