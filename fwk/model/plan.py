@@ -122,6 +122,8 @@ class Plan:
     public_url: str = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304"
     outside: dict[str, str] = field(default_factory=dict)
     """Channels that programs outside may write on the public bus: name to type."""
+    cores: Literal["any", "namespace"] = "any"
+    """Processors of the hosts: any, or one for each namespace, in turn."""
     scoreboard: str = ""
     """`module:function` that makes the display's headline from the newest messages."""
     scoreboard_channels: tuple[str, ...] = ()

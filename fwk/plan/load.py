@@ -178,6 +178,7 @@ class _Loading:
             "stage_time_us": round(last(files, "stage_time_s", 0.0) * US_PER_S),
             "loop_time_us": round(last(files, "loop_time_s", 0.0) * US_PER_S),
             "loop_time_warnings": last(files, "loop_time_warnings", True),
+            "cores": last(files, "cores", "any"),
             "public_url": public_url_of(files, problems, options.bus_port),
             "scoreboard": function_of(files, "scoreboard", self.folders, problems),
             "video": self._function("video"),

@@ -177,6 +177,8 @@ class HostFile(_Entry):
     """Channels that programs outside may write on the public bus: name to type."""
     hosts: dict[str, Words] = {}
     """Name of a process to patterns of the components that share it."""
+    cores: Literal["any", "namespace"] | None = None
+    """`namespace`: the processes of a namespace stay on one processor; namespaces take turns."""
     scoreboard: str | None = None
     """`module:function` that makes the display's headline."""
     video: str | None = None

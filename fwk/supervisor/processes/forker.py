@@ -32,6 +32,7 @@ from fwk.host.profile import Profile, ProfileRequest
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 from fwk.model.signals import ignore
+from fwk.supervisor.processes.cores import stay_on_core
 from fwk.supervisor.processes.preload import preload
 from fwk.supervisor.processes.starter import Ended, Started
 from fwk.supervisor.processes.zygote_link import StartRequest, ZygoteEnd
@@ -111,6 +112,7 @@ class Forker:
         if pid == 0:
             die_with_parent(parent)
             name_process(self._plan.name, self._plan.hosts[host].name)
+            stay_on_core(self._plan, host)
             signal.signal(signal.SIGCHLD, signal.SIG_DFL)
             self._connection.close()
             if not debugged:  # a debugged process keeps the terminal

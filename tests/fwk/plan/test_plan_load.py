@@ -70,12 +70,12 @@ def test_keys_of_a_file_describe_the_run(load: Load) -> None:
     plan = load(
         "name: other\nperiod_s: 0.01\nclock: wall\nspeed: max\nseed: 9\nstage_time_s: 0.002\n"
         "stages: [act_exec, sensor_acquire]\npublic_url: udpm://239.255.76.67:7777?ttl=1\n"
-        "scoreboard: plan_parts:greet\nloop_time_s: 0.02\nloop_time_warnings: false\n"
+        "scoreboard: plan_parts:greet\nloop_time_s: 0.02\nloop_time_warnings: false\ncores: namespace\n"
         "components: {it/a: {use: plan_parts:Odometer, restart: {when: never, limit: 2}, ready_timeout_s: 3}}\n"
     )
     assert (plan.name, plan.period_us, plan.clock, plan.speed, plan.seed) == ("other", 10_000, "wall", 0.0, 9)
     assert (plan.stage_time_us, plan.stages) == (2_000, ("act_exec", "sensor_acquire"))
-    assert (plan.loop_time_us, plan.loop_time_warnings) == (20_000, False)
+    assert (plan.loop_time_us, plan.loop_time_warnings, plan.cores) == (20_000, False, "namespace")
     assert plan.public_url == "udpm://239.255.76.67:7777?ttl=1&recv_buf_size=4194304"
     assert (plan.scoreboard, plan.scoreboard_channels) == ("plan_parts:greet", ("it/odometry",))
     only = plan.components[0]
