@@ -248,7 +248,7 @@ def test_keys_and_values(folder: Path, broken: Broken) -> None:
     ),
     Broken(
         "it.host.yaml:1: no key 'components'; there are clock, config, cores, evaluation, hosts, log, loop_time_s, "
-        "loop_time_warnings, outside, period_s, public_url, record, runs, ...",
+        "loop_time_warnings, outside, period_s, public_url, record, ...",
         """
         components: {it/a: {use: plan_parts:Odometer}}
         --- it.host.yaml
