@@ -27,7 +27,7 @@ _IN_MOUTH_M2 = np.eye(2) * 0.03**2
 
 
 class BallNews(NamedTuple):
-    """What a tick brings about the ball."""
+    """News of a tick about the ball."""
 
     now_us: int
     """Logical time."""
@@ -73,7 +73,7 @@ class BallFollower:
             self.tracker = BallTracker(config.ball)
         self._config = config
         self._walls = Walls.of(config.field, config.ball)
-        self._mouth_m = config.robot.held_ball_m(config.ball)  # from the robot's middle to a held ball's
+        self._mouth_m = config.mouth_m
 
     def follow(self, news: BallNews, view: OwnView, robots: Iterable[RobotRow]) -> Kick | None:
         """Takes what a tick brings; returns the robot's own kick, if it has kicked.

@@ -58,8 +58,13 @@ class WorldModelConfig(Config):
         return (now_us - capture_us) / US_PER_S if capture_us and self.use_capture_times else 0.0
 
     @property
+    def mouth_m(self) -> float:
+        """Distance from a robot's middle to the middle of a ball in its mouth."""
+        return self.robot.held_ball_m(self.ball)
+
+    @property
     def opponent_settings(self) -> OpponentSettings:
-        """What an obstacle must be like to be an opponent."""
+        """Limits for an obstacle to count as an opponent."""
         return OpponentSettings(
             half_length_m=self.field.half_length_m + self.border_m,
             half_width_m=self.field.half_width_m + self.border_m,

@@ -110,7 +110,7 @@ class WorldModel(Component):
         self._opponents.robot_width_m = self._silent.robot_width_m = 2 * self.config.robot.radius_m
         player = player_of(self._robot, self.config.players)
         self._own_team = TEAM_NUMBERS[player.team] if player else 0
-        self._mouth_m = self.config.robot.held_ball_m(self.config.ball)
+        self._mouth_m = self.config.mouth_m
 
     def _listen(self, now_s: float) -> list[tuple[team_message_t, Mate]]:
         """Returns the messages of mates that arrived in this tick and are not older than known ones."""

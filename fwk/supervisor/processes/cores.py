@@ -15,16 +15,15 @@ def core_of(plan: Plan, host: int, allowed: list[int]) -> int | None:
 
     In real time no processor is given: where another program is busy, half of a system would be late.
     """
+    if plan.cores != "namespace" or plan.clock == "wall":
+        return None
     namespaces = [plan.components[each.components[0]].namespace for each in plan.hosts]
     distinct = list(dict.fromkeys(namespaces))
-    if plan.cores != "namespace" or plan.clock == "wall" or len(distinct) < 2:
-        return None
-    return allowed[distinct.index(namespaces[host]) % len(allowed)]
+    return allowed[distinct.index(namespaces[host]) % len(allowed)] if len(distinct) > 1 else None
 
 
-def stay_on_core(plan: Plan, host: int) -> None:
-    """Binds this process, which is that of a host, to the host's processor."""
-    with suppress(OSError):  # no system's permission: the host runs anywhere
-        core = core_of(plan, host, sorted(os.sched_getaffinity(0)))
-        if core is not None:
+def stay_on_core(core: int | None) -> None:
+    """Binds this process to a processor, if one is given and the system permits it."""
+    if core is not None:
+        with suppress(OSError):
             os.sched_setaffinity(0, {core})

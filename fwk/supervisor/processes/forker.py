@@ -32,7 +32,7 @@ from fwk.host.profile import Profile, ProfileRequest
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 from fwk.model.signals import ignore
-from fwk.supervisor.processes.cores import stay_on_core
+from fwk.supervisor.processes.cores import core_of, stay_on_core
 from fwk.supervisor.processes.preload import preload
 from fwk.supervisor.processes.starter import Ended, Started
 from fwk.supervisor.processes.zygote_link import StartRequest, ZygoteEnd
@@ -108,11 +108,12 @@ class Forker:
         port = Ports.of(self._plan).host(host)
         _drain(self._sockets[port])
         parent = os.getpid()
+        core = core_of(self._plan, host, sorted(os.sched_getaffinity(0)))
         pid = os.fork()
         if pid == 0:
             die_with_parent(parent)
             name_process(self._plan.name, self._plan.hosts[host].name)
-            stay_on_core(self._plan, host)
+            stay_on_core(core)
             signal.signal(signal.SIGCHLD, signal.SIG_DFL)
             self._connection.close()
             if not debugged:  # a debugged process keeps the terminal

@@ -15,7 +15,7 @@ def plan() -> Plan:
     return launch_plan("soccer.yaml")
 
 
-def test_a_robots_processes_share_a_processor_and_robots_take_turns(plan: Plan) -> None:
+def test_robots_processes_share_a_processor_robots_take_turns(plan: Plan) -> None:
     cores: dict[str, set[int | None]] = {}
     for index, host in enumerate(plan.hosts):
         namespace = plan.components[host.components[0]].namespace
@@ -32,16 +32,19 @@ def test_without_the_key_and_in_real_time_the_system_decides(plan: Plan, other: 
 
 def test_a_process_is_bound_to_a_processor_that_it_may_use(plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
     bound: list[set[int]] = []
-    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {3})
     monkeypatch.setattr(os, "sched_setaffinity", lambda _, cores: bound.append(cores))
-    stay_on_core(plan, 0)
-    stay_on_core(replace(plan, cores="any"), 0)
+    stay_on_core(core_of(plan, 0, [3]))
+    stay_on_core(core_of(replace(plan, cores="any"), 0, [3]))
     assert bound == [{3}]
 
 
-def test_a_system_that_refuses_lets_the_host_run_anywhere(plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(_pid: int, _cores: set[int]) -> None:
+def test_a_system_that_refuses_lets_the_host_run_anywhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[set[int]] = []
+
+    def refuse(_pid: int, cores: set[int]) -> None:
+        asked.append(cores)
         raise PermissionError
 
     monkeypatch.setattr(os, "sched_setaffinity", refuse)
-    stay_on_core(plan, 0)
+    stay_on_core(3)
+    assert asked == [{3}]
