@@ -1,6 +1,7 @@
 """Driver of the kicker: carries out kicks once ball and charge are there, and handles the ball."""
 
 import math
+from collections import deque
 from typing import NamedTuple
 
 from pydantic import PositiveFloat
@@ -13,6 +14,8 @@ from procs.model.robot import ROBOT, RobotModel
 _STEEPEST_RAD = math.pi / 3  # of a lob
 _KICKS_MAX = 2**31 - 1
 """Kicks are numbered from 1 to this number, then from 1 again."""
+_UNDER_WAY_MAX = 8
+"""So many kicks may be under way to the hardware; older ones are forgotten."""
 
 
 class _Asked(NamedTuple):
@@ -53,14 +56,14 @@ class Kicker(Component):
 
     def init(self) -> None:
         self._kicks = 0
-        self._asked: _Asked | None = None  # newest kick that the hardware has not carried out
-        self._asked_us = 0  # when it was told
+        self._under_way: deque[_Asked] = deque(maxlen=_UNDER_WAY_MAX)  # not carried out yet, oldest first
+        self._asked_us = 0  # when the newest was told
         self._late = False
 
     def loop(self) -> None:
         for sensor in self.kicker_sensor.fresh:
-            if self._asked is not None and sensor.kick_id == self._asked.kick_id:
-                self._kicked(self._asked)
+            if any(asked.kick_id == sensor.kick_id for asked in self._under_way):
+                self._kicked(sensor.kick_id)
             self.kicker_state.value.kick_id = sensor.kick_id
         if self.clock.stage == "act_exec":
             self._act()
@@ -73,13 +76,16 @@ class Kicker(Component):
         self.kicker_drive.value.kick_id = self.kicker_sensor.value.kick_id
         self.kicker_drive.write()
 
-    def _kicked(self, asked: _Asked) -> None:
+    def _kicked(self, kick_id: int) -> None:
+        """Takes the report of a kick that is under way; the hardware has passed over the kicks before it."""
+        while (asked := self._under_way.popleft()).kick_id != kick_id:
+            pass
         self._kicks += 1
         state = self.kicker_state.value
         state.kick_speed_m_s, state.kick_elevation_rad = asked.speed_m_s, asked.elevation_rad
-        self._asked = None
-        for request in self.kick.open:
-            request.done()
+        if not self._under_way:
+            for request in self.kick.open:
+                request.done()
 
     def _report(self) -> None:
         state, sensor = self.kicker_state.value, self.kicker_sensor.value
@@ -97,10 +103,11 @@ class Kicker(Component):
         if sensor.ball_held and sensor.charged and (request := self.kick.take()):
             self._fail_open("a newer kick replaced it", besides=request)
             request.accept()
-            drive.kick_id = sensor.kick_id % _KICKS_MAX + 1
+            newest_id = self._under_way[-1].kick_id if self._under_way else sensor.kick_id
+            drive.kick_id = newest_id % _KICKS_MAX + 1
             drive.elevation_rad = clamp(request.value.elevation_rad, 0.0, _STEEPEST_RAD)
             drive.kick_m_s = self.config.robot.kicked_m_s(request.value.speed_m_s, drive.elevation_rad)
-            self._asked = _Asked(drive.kick_id, drive.kick_m_s, drive.elevation_rad)
+            self._under_way.append(_Asked(drive.kick_id, drive.kick_m_s, drive.elevation_rad))
             self._asked_us = self.clock.now_us
         drive.dribble = self._is_fresh() and self.dribble_command.value.on
         self.kicker_drive.write()

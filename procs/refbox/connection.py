@@ -5,10 +5,10 @@ import os
 import socket
 
 from fwk import Clock, Logger
+from procs.refbox.inbox import Inbox
 from procs.refbox.lookup import Lookup
-from procs.refbox.protocol import ProtocolError, Stream
+from procs.refbox.protocol import ProtocolError
 
-_HEARD = 65_536  # bytes taken from the RefBox in a tick
 _UNDER_WAY = frozenset({errno.EINPROGRESS, errno.EALREADY, errno.EWOULDBLOCK, errno.EINTR})
 
 
@@ -23,7 +23,7 @@ class Connection:
         self._lookup: Lookup | None = None  # of a connection that is being made
         self._address = ("", 0)
         self._dialled_us = 0
-        self._stream = Stream()
+        self._inbox: Inbox | None = None
         self._again_us = 0
         self._retry_s = 0.0
         self._reason = ""  # why the RefBox cannot be reached
@@ -46,7 +46,7 @@ class Connection:
         self._retry_s = retry_s
         if (host, port) != self._address:
             self.close()
-            self._socket = self._dialling = self._lookup = None
+            self._socket = self._inbox = self._dialling = self._lookup = None
             self._address, self._again_us, self._reason = (host, port), 0, ""
         if self._socket is not None:
             self._send_rest()
@@ -54,20 +54,14 @@ class Connection:
             self._dial(host, port, connect_s)
 
     def messages(self) -> list[bytes]:
-        """Returns the messages that have arrived, without their NUL."""
-        if self._socket is None:
+        """Returns messages that have arrived, without their NUL; of very many, the rest in the next ticks."""
+        if self._inbox is None:
             return []
         try:
-            data = self._socket.recv(_HEARD)
-            if data:
-                return list(self._stream.feed(data))
-            reason = "it closed the connection"
-        except BlockingIOError:
+            return self._inbox.take()
+        except (EOFError, OSError, ProtocolError) as error:
+            self._lose(str(error))
             return []
-        except (OSError, ProtocolError) as error:
-            reason = str(error)
-        self._lose(reason)
-        return []
 
     def send(self, data: bytes) -> None:
         """Sends a message as fast as the RefBox reads; it has to be `ready`."""
@@ -92,7 +86,7 @@ class Connection:
             return
         dialled, self._dialling, self._lookup = self._dialling, None, None
         if dialled is not None and code in (0, errno.EISCONN):
-            self._socket, self._stream, self._reason, self._unsent = dialled, Stream(), "", b""
+            self._socket, self._inbox, self._reason, self._unsent = dialled, Inbox(dialled), "", b""
             self._log.info(f"connected with the RefBox at {host}:{port}")
             return
         if dialled is not None:
@@ -132,7 +126,7 @@ class Connection:
         self._log.warning(f"lost the RefBox: {reason}")
         if self._socket is not None:
             self._socket.close()
-        self._socket = None
+        self._socket = self._inbox = None
         self._try_later()
 
     def _try_later(self) -> None:

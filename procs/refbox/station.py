@@ -3,11 +3,9 @@
 import socket
 
 from fwk import Logger
-from procs.refbox.protocol import ProtocolError, Stream
+from procs.refbox.inbox import Inbox
+from procs.refbox.protocol import ProtocolError
 from procs.refbox.world_state import check
-
-_HEARD = 65_536  # bytes taken from a base station in a tick
-_READ = 100  # messages of a base station that are read in a tick; it reports ten times a second
 
 
 class Station:
@@ -22,19 +20,18 @@ class Station:
         """Number of its messages that were no world states."""
         self._connection = connection
         self._log = log
-        self._stream = Stream()
-        self._unread: list[bytes] = []
+        self._inbox = Inbox(connection)
 
     def hear(self) -> bool:
-        """Takes what has arrived; returns False if the base station has left.
-
-        Of very many messages it reads some in each tick, before it takes more.
-        """
-        there = bool(self._unread) or self._receive()
-        for message in self._unread[:_READ]:
-            self._take(message)
-        del self._unread[:_READ]
-        return there
+        """Takes what has arrived; returns False if the base station has left."""
+        try:
+            for message in self._inbox.take():
+                self._take(message)
+        except ProtocolError as error:
+            self._refuse(error)
+        except (EOFError, OSError):
+            return False
+        return True
 
     def send(self, data: bytes) -> bool:
         """Sends bytes; returns False if the base station has left or does not read what it is sent."""
@@ -46,22 +43,6 @@ class Station:
     def close(self) -> None:
         """Cuts the base station off."""
         self._connection.close()
-
-    def _receive(self) -> bool:
-        """Receives messages; returns False if the base station has left."""
-        try:
-            data = self._connection.recv(_HEARD)
-        except BlockingIOError:
-            return True
-        except OSError:
-            return False
-        try:
-            for message in self._stream.feed(data):
-                self._unread.append(message)
-        except ProtocolError as error:
-            self._stream = Stream()
-            self._refuse(error)
-        return bool(data)
 
     def _take(self, message: bytes) -> None:
         try:

@@ -98,10 +98,27 @@ def test_newer_kick_replaces_one_that_the_hardware_ignores(kicker: Bench) -> Non
     act(kicker, READY)
     kicker.kick.put(speed_m_s=3.0)
     drive = act(kicker, READY)
-    assert (drive.kick_id, drive.kick_m_s) == (1, 3.0)
-    act(kicker, {**READY, "kick_id": 1})
+    assert (drive.kick_id, drive.kick_m_s) == (2, 3.0)
+    act(kicker, {**READY, "kick_id": 2})
     assert answers(kicker)[1:] == [(1, answer_t.FAILED), (2, answer_t.ACCEPTED), (2, answer_t.DONE)]
     assert kicker.port("kicker_state").sent[-1].kick_speed_m_s == 3.0
+
+
+def test_replaced_kick_that_comes_late_counts_as_it_was(kicker: Bench) -> None:
+    """The hardware needs longer than a tick: it kicks for the first request after it was told of the second."""
+    kicker.kick.put(speed_m_s=3.0)
+    first = act(kicker, READY)
+    kicker.kick.put(speed_m_s=8.0)
+    second = act(kicker, READY)
+    assert second.kick_id != first.kick_id
+    act(kicker, {**EMPTY, "kick_id": first.kick_id})
+    state = kicker.port("kicker_state").sent[-1]
+    assert (state.kicks, state.kick_speed_m_s) == (1, 3.0)
+    assert (2, answer_t.DONE) not in answers(kicker)
+    act(kicker, {**EMPTY, "kick_id": second.kick_id})
+    state = kicker.port("kicker_state").sent[-1]
+    assert (state.kicks, state.kick_speed_m_s) == (2, 8.0)
+    assert answers(kicker)[-1] == (2, answer_t.DONE)
 
 
 @pytest.mark.parametrize("sensor", [READY, EMPTY, {"ball_held": True, "charged": False}])

@@ -247,12 +247,31 @@ def test_nonsense_of_a_refbox_is_named(refbox: socket.socket) -> None:
         connection.sendall(b"hello\0" + b"?\0" * 500)
         for _ in range(100):
             bench.iterate()
-            if any("is not JSON" in line.text for line in bench.logged):
+            if any(line.text == "RefBox: b'?' is not JSON" for line in bench.logged):
                 break
     assert [line.text for line in bench.logged if "RefBox:" in line.text] == [
-        "RefBox: b'hello' is not JSON (and 500 more)"
+        "RefBox: b'hello' is not JSON (and 99 more)",
+        *["RefBox: b'?' is not JSON (and 99 more)"] * 4,
+        "RefBox: b'?' is not JSON",
     ]
     bench.finalize()
+
+
+def test_command_behind_a_flood_is_obeyed(refbox: socket.socket) -> None:
+    components = {"world/refbox": RefBoxClient, "world/referee": Referee, "world/simulator": Simulator}
+    settings = {"world/refbox": {"port": refbox.getsockname()[1]}, "world/referee": {"automatic": False}}
+    system = MemorySystem(components, settings=settings)
+    system.tick()
+    connection, _ = refbox.accept()
+    with connection:
+        connection.sendall(b"?\0" * 2000 + say("CORNER", CYAN))
+        for _ in range(100):
+            system.tick()
+            if system.newest("world/game_state").state == game_state_t.CORNER_KICK:
+                break
+    system.runners["world/refbox"].component.finalize()
+    assert system.newest("world/game_state").state == game_state_t.CORNER_KICK
+    assert not [line.text for line in system.logged if "lost the RefBox" in line.text]
 
 
 def test_refused_commands_of_a_tick_are_one_line(refbox: socket.socket) -> None:
