@@ -2,6 +2,7 @@
 
 from fwk.lcm.messages import decoder, encoder
 from lcmtypes.core import (
+    actual_t,
     announcement_t,
     done_t,
     fetch_records_t,
@@ -17,6 +18,7 @@ TICK = b"fwk/tick"
 DONE = b"fwk/done"
 TAKEN = b"fwk/taken"
 LEAVING = b"fwk/leaving"
+ACTUAL = b"fwk/actual"
 RECORD = b"fwk/record"
 RECORDED = b"fwk/recorded"
 ANNOUNCE = b"fwk/announce"
@@ -27,6 +29,8 @@ encode_tick = encoder(tick_t, "fwk/tick")
 decode_tick = decoder(tick_t, "fwk/tick")
 encode_done = encoder(done_t, "fwk/done")
 decode_done = decoder(done_t, "fwk/done")
+encode_actual = encoder(actual_t, "fwk/actual")
+decode_actual = decoder(actual_t, "fwk/actual")
 encode_record = encoder(tick_record_t, "fwk/record")
 decode_record = decoder(tick_record_t, "fwk/record")
 encode_recorded = encoder(recorded_t, "fwk/recorded")

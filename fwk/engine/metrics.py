@@ -36,11 +36,7 @@ class ComponentMetrics:
     def histogram(self) -> histogram_t:
         """Returns the durations of the iterations as the host reports them."""
         made = histogram_t()
-        made.n, made.bucket, made.count = (
-            len(self.times.counts),
-            list(self.times.counts),
-            list(self.times.counts.values()),
-        )
+        made.bucket, made.count = list(self.times.counts), list(self.times.counts.values())
         return made
 
 

@@ -29,6 +29,8 @@ from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, leaving_t, log_t, p
 READY_REPORT_US = 100_000
 """Interval of the reports that a host is ready, until its first tick comes."""
 REPORT_US = US_PER_S
+TICK_AWAITED_US = 250_000
+"""A report that is due waits so long for the end of a stage: after it the host is awake anyway, its memory warm."""
 
 
 class Host:
@@ -103,7 +105,7 @@ class Host:
         self._message = done_t()  # the next done; fields that stay the same are written once
         self._message.run, self._message.host = assignment.run, assignment.host
         self._message.incarnation = assignment.start.incarnation
-        self._report_us = 0
+        self._report_us = self._report_wake_us = 0
 
     def current_log(self) -> Logger:
         """Returns the log of the component that is being executed; while none is, the host's own."""
@@ -144,7 +146,7 @@ class Host:
         """Answers ticks and fetches until the process is asked to stop."""
         own, stopping, now_us = self._own.fileno(), self._stopping, self._now_us
         while not stopping():
-            for descriptor in (yield min(self._report_us, self._sender.due_us)):
+            for descriptor in (yield min(self._report_wake_us, self._sender.due_us)):
                 if descriptor == own:
                     self._handle_own()
                 elif descriptor in self._ticks:
@@ -319,21 +321,22 @@ class Host:
 
     def _report(self) -> None:
         """Sends the states and figures of all components."""
-        self._report_us = self._now_us() + (READY_REPORT_US if self._answered[0] == 0 else REPORT_US)
+        ticks = self._answered[0] > 0
+        self._report_us = self._now_us() + (REPORT_US if ticks else READY_REPORT_US)
+        self._report_wake_us = self._report_us + (TICK_AWAITED_US if ticks else 0)
         runners, metrics = self.group.runners, self.group.metrics.values()
         actual = actual_t()
         actual.run, actual.host = self._assignment.run, self._assignment.host
         actual.incarnation = self._assignment.start.incarnation
         actual.components = [each.message() for each in metrics]
         actual.times = [each.histogram() for each in metrics]
-        actual.n = len(actual.components)
         for component in actual.components:
             if component.name in runners:
                 component.lost_frames = sum(image.lost for image in runners[component.name].images.values())
         counters = actual.counters
         counters.fetched, counters.lost = self.inputs.fetched, self.inputs.lost
         counters.foreign = self._complaints.total
-        self._sender.publish(b"fwk/actual", actual.encode(), self._sync_port)
+        self._sender.publish(sync.ACTUAL, sync.encode_actual(actual), self._sync_port)
         for runner in runners.values():
             runner.log._report_dropped()
 

@@ -54,8 +54,8 @@ class SyncReceiver:
                 raise MessageError(f"datagram from port {source}, which is not the gateway's")
             if recorded.run == self._run:
                 self._emit(recorded)
-        elif channel == b"fwk/actual":
-            self._take_state(actual_t.decode(data), source)
+        elif channel == sync.ACTUAL:
+            self._take_state(sync.decode_actual(data), source)
         elif channel:
             raise MessageError(f"channel {channel!r} does not belong on the sync bus")
 

@@ -103,7 +103,7 @@ class BallFollower:
 
     def _take_placed_ball(self, game: game_state_t) -> None:
         """Takes the ball that the crew has put down: it acts in the tick after the state of the game says so."""
-        spot_m = self._placed.spot_m(game, self.tracker.known)
+        spot_m = self._placed.spot_m(game, self.tracker)
         if spot_m is not None:
             self.tracker.put_down(spot_m)
 
