@@ -30,7 +30,7 @@ class _Past(NamedTuple):
 
     def older(self, by_s: float) -> "_Past":
         """Returns the same a while later."""
-        return self._replace(age_s=self.age_s + by_s)
+        return _Past(self.age_s + by_s, self.pose, self.rates)
 
 
 class OwnView:
