@@ -25,12 +25,14 @@ class Station:
     def hear(self) -> bool:
         """Takes what has arrived; returns False if the base station has left."""
         try:
-            for message in self._inbox.take():
-                self._take(message)
+            arrived = self._inbox.take()
         except ProtocolError as error:
             self._refuse(error)
+            return True
         except (EOFError, OSError):
             return False
+        for message in arrived:
+            self._take(message)
         return True
 
     def send(self, data: bytes) -> bool:
