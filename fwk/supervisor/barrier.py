@@ -65,6 +65,7 @@ class Barrier(ABC):
         self._lookahead = lookahead(core.plan)
         self._early: dict[tuple[int, int], dict[int, done_t]] = {}  # by tick and step, then by host
         self._rejoined = False  # a host joined the running stage: send it the tick at once
+        self._repeated = Turn(-1, -1, []), (0, -1)  # the newest stage whose tick was repeated, and its place
 
     def run(self, tick: Tick, turn: Turn) -> Steps[None]:
         """Runs one stage of a tick to its end."""
@@ -75,6 +76,7 @@ class Barrier(ABC):
         self._tick_log.event(StageBegun(stage, turn.step))
         self._send(begins=True)
         began_us = sent_us = now_us = core.now_us()
+        timeout = self._timeouts[stage]
         self._take_early()
         look_us = began_us + LOOK_US
         ends_us = self._ends_us(began_us)
@@ -86,11 +88,15 @@ class Barrier(ABC):
             yield from core.events.wait(min(repeats.due_us, look_us, ends_us))
             now_us = core.now_us()
             if not self.outstanding:
-                self._timeouts[stage].took(now_us - sent_us)
+                repeated = self._repeated[1] == self.place
+                timeout.took(now_us - (began_us if repeated else sent_us), repeated)
             elif now_us >= ends_us:
                 self._leave_behind()
             elif self._rejoined or now_us >= repeats.due_us:
-                self.repeated += not self._rejoined
+                if not self._rejoined:
+                    self.repeated += 1
+                    self._repeated = turn, self.place
+                    timeout.repeated()
                 self._send()
                 sent_us = core.now_us()
                 if self._rejoined:
@@ -119,6 +125,12 @@ class Barrier(ABC):
             kept = self._early.setdefault(place, {})
             host.early += host.index not in kept
             kept[host.index] = done
+
+    def answered_again(self, done: done_t) -> None:
+        """Notes a done that does not count: perhaps a host answers a repeated tick that it had answered before."""
+        turn, place = self._repeated
+        if (done.tick, done.step) == place:
+            self._timeouts[turn.stage].answered_twice()
 
     def _take_early(self) -> None:
         """Takes the dones of hosts that have run the beginning stage ahead, also of those that have died since."""

@@ -63,6 +63,7 @@ class Dones:
                 self._take(host, done)
             else:
                 self._barrier.keep_early(host, done)
+                self._barrier.answered_again(done)
         except MessageError as error:
             self._complain("fwk/done", f"{error}; refused")
 

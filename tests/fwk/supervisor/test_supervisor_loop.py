@@ -50,6 +50,41 @@ def test_repeated_tick_does_not_carry_newer_marks() -> None:
     assert [list(tick.absent) for tick in told] == [[], [LEFT], [LEFT]]
 
 
+def repetition_wait_us(run: MemoryRun, answers: int) -> int:
+    """Lets a host answer a repeated tick this often; returns how long the tick was waited for before."""
+    run.does_not_answer = {RIGHT}
+    tick, repeated = len(run.records) + 1, run.supervisor.loop.barrier.repeated
+    run.play(lambda: run.ticks[-1].tick == tick)
+    began_us = run.wall_us
+    run.play(lambda: run.supervisor.loop.barrier.repeated > repeated)
+    waited_us = run.wall_us - began_us
+    for _ in range(answers):
+        run.done(RIGHT, tick, THINK, sequence=tick)
+    run.does_not_answer = set()
+    run.play_ticks(1)
+    return waited_us
+
+
+def test_ticks_that_are_repeated_in_vain_are_waited_for_longer() -> None:
+    run = pair()
+    run.play_ticks(100)
+    first_us = repetition_wait_us(run, answers=2)
+    for _ in range(10):
+        run.play_ticks(10)
+        last_us = repetition_wait_us(run, answers=2)
+    assert last_us > first_us + 4_000
+
+
+def test_lost_ticks_are_repeated_as_soon_as_before() -> None:
+    run = pair()
+    run.play_ticks(100)
+    first_us = repetition_wait_us(run, answers=1)
+    for _ in range(10):
+        run.play_ticks(10)
+        last_us = repetition_wait_us(run, answers=1)
+    assert last_us < first_us + 200
+
+
 def test_done_after_the_news_of_death_does_not_count() -> None:
     run = pair()
     run.does_not_answer = {RIGHT}
