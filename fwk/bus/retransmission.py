@@ -27,18 +27,16 @@ class Backoff:
 class RetransmissionTimeout:
     """Learns the usual duration of a stage, as TCP learns round trips (RFC 6298): smoothed time and deviation.
 
-    After a repetition either copy of the tick may be the one that was answered. If a host answers both, the first had
-    arrived and only took long: it teaches its whole duration, up to twice the timeout, and the margin doubles. If none
-    does, it was lost: it teaches nothing (Karn and Partridge, 1987), and the margin is small again, so that further
-    losses are noticed soon.
+    After a repetition a host that answers both copies of the tick shows that the first had not been lost: the margin
+    doubles, as each copy wakes hosts. If no host does, the tick was lost, and the margin is small again, so that
+    further losses are noticed soon.
     """
 
     def __init__(self) -> None:
         self._usual_us = _AT_FIRST_US
         self._deviation_us = _AT_FIRST_US // 4
         self._margin_us = _MARGIN_US
-        self._repeated = self._in_vain = False  # since the last stage whose tick was sent once
-        self._repeated_took_us = 0
+        self._seems_lost = False  # a tick was repeated, and no host has answered twice yet
 
     @property
     def wait_us(self) -> int:
@@ -47,36 +45,22 @@ class RetransmissionTimeout:
 
     def repeated(self) -> None:
         """Notes that a tick is repeated."""
-        self._repeated, self._in_vain, self._repeated_took_us = True, False, 0
+        self._seems_lost = True
 
     def answered_twice(self) -> None:
         """Notes that a host answered both copies of the tick that was repeated."""
-        if self._repeated and not self._in_vain:
-            self._in_vain, self._margin_us = True, min(2 * self._margin_us, _LONGEST_MARGIN_US)
-            self._learn_in_vain()
+        if self._seems_lost:
+            self._seems_lost, self._margin_us = False, min(2 * self._margin_us, _LONGEST_MARGIN_US)
 
     def took(self, duration_us: int, repeated: bool = False) -> None:
-        """Takes note that a stage was answered this long after its tick was sent for the first time.
+        """Learns from a stage that was answered this long after its tick was sent the last time.
 
         Args:
             duration_us: wall time.
-            repeated: the tick was repeated meanwhile.
+            repeated: the tick was sent more than once; a second answer may still come.
         """
-        if repeated:
-            self._repeated_took_us = duration_us
-            self._learn_in_vain()
-            return
-        if self._repeated and not self._in_vain:
-            self._margin_us = _MARGIN_US
-        self._repeated = False
-        self._learn(duration_us)
-
-    def _learn_in_vain(self) -> None:
-        """Learns from a stage that was repeated in vain, once it has been answered: a debugger may have held it up."""
-        if self._in_vain and self._repeated_took_us:
-            self._learn(min(self._repeated_took_us, 2 * self.wait_us))
-
-    def _learn(self, duration_us: int) -> None:
+        if self._seems_lost and not repeated:
+            self._seems_lost, self._margin_us = False, _MARGIN_US
         error_us = duration_us - self._usual_us
         self._usual_us += error_us // 8
         self._deviation_us += (abs(error_us) - self._deviation_us) // 4

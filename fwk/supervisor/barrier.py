@@ -88,8 +88,7 @@ class Barrier(ABC):
             yield from core.events.wait(min(repeats.due_us, look_us, ends_us))
             now_us = core.now_us()
             if not self.outstanding:
-                repeated = self._repeated[1] == self.place
-                timeout.took(now_us - (began_us if repeated else sent_us), repeated)
+                timeout.took(now_us - sent_us, repeated=self._repeated[1] == self.place)
             elif now_us >= ends_us:
                 self._leave_behind()
             elif self._rejoined or now_us >= repeats.due_us:
