@@ -65,7 +65,7 @@ class Barrier(ABC):
         self._lookahead = lookahead(core.plan)
         self._early: dict[tuple[int, int], dict[int, done_t]] = {}  # by tick and step, then by host
         self._rejoined = False  # a host joined the running stage: send it the tick at once
-        self._repeated = Turn(-1, -1, []), (0, -1)  # the newest stage whose tick was repeated, and its place
+        self._repeated = -1, (0, -1)  # the newest stage whose tick was repeated, and its place
 
     def run(self, tick: Tick, turn: Turn) -> Steps[None]:
         """Runs one stage of a tick to its end."""
@@ -91,17 +91,18 @@ class Barrier(ABC):
                 timeout.took(now_us - sent_us, repeated=self._repeated[1] == self.place)
             elif now_us >= ends_us:
                 self._leave_behind()
-            elif self._rejoined or now_us >= repeats.due_us:
-                if not self._rejoined:
-                    self.repeated += 1
-                    self._repeated = turn, self.place
-                    timeout.repeated()
+            elif self._rejoined:
+                self._rejoined = False
                 self._send()
                 sent_us = core.now_us()
-                if self._rejoined:
-                    self._rejoined, repeats = False, self._repeats(sent_us)
-                else:
-                    repeats.repeated(sent_us)
+                repeats = self._repeats(sent_us)
+            elif now_us >= repeats.due_us:
+                self.repeated += 1
+                self._repeated = stage, self.place
+                timeout.repeated()
+                self._send()
+                sent_us = core.now_us()
+                repeats.repeated(sent_us)
         self.report.ended()
         self._times.stage_ended(stage, now_us - began_us)
 
@@ -127,9 +128,9 @@ class Barrier(ABC):
 
     def answered_again(self, done: done_t) -> None:
         """Notes a done that does not count: perhaps a host answers a repeated tick that it had answered before."""
-        turn, place = self._repeated
+        stage, place = self._repeated
         if (done.tick, done.step) == place:
-            self._timeouts[turn.stage].answered_twice()
+            self._timeouts[stage].answered_twice()
 
     def _take_early(self) -> None:
         """Takes the dones of hosts that have run the beginning stage ahead, also of those that have died since."""

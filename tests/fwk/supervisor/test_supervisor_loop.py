@@ -65,23 +65,23 @@ def repetition_wait_us(run: MemoryRun, answers: int) -> int:
     return waited_us
 
 
-def test_ticks_that_are_repeated_in_vain_are_waited_for_longer() -> None:
-    run = pair()
-    run.play_ticks(100)
-    first_us = repetition_wait_us(run, answers=2)
-    for _ in range(10):
+def repetition_waits_us(answers: int) -> list[int]:
+    """Returns how long ticks were waited for, each of which a host answers this often once it is repeated."""
+    run, waited_us = pair(), []
+    run.play_ticks(90)
+    for _ in range(11):
         run.play_ticks(10)
-        last_us = repetition_wait_us(run, answers=2)
+        waited_us.append(repetition_wait_us(run, answers))
+    return waited_us
+
+
+def test_ticks_that_are_repeated_in_vain_are_waited_for_longer() -> None:
+    first_us, *_, last_us = repetition_waits_us(answers=2)
     assert last_us > first_us + 4_000
 
 
 def test_lost_ticks_are_repeated_as_soon_as_before() -> None:
-    run = pair()
-    run.play_ticks(100)
-    first_us = repetition_wait_us(run, answers=1)
-    for _ in range(10):
-        run.play_ticks(10)
-        last_us = repetition_wait_us(run, answers=1)
+    first_us, *_, last_us = repetition_waits_us(answers=1)
     assert last_us < first_us + 200
 
 
