@@ -15,6 +15,8 @@ FIRST_WAIT_US = 200
 """Wait before the first fetch: on one machine a message arrives before the tick that names it, unless it was lost."""
 SECOND_WAIT_US = 2_000
 LONGEST_WAIT_US = 100_000
+REAL_TIME_LONGEST_WAIT_US = 20_000
+"""In real time fetches are repeated more often, because a writer has a limited time for its answer."""
 WRITER_TIMEOUT_US = 500_000
 """In real time: a writer that has not answered by then may have stopped, and the gateway is asked instead."""
 
@@ -41,7 +43,9 @@ class Inputs:
         self._network = network
         self._sender = sender
         self._ports = ports
-        self._writer_timeout_us = WRITER_TIMEOUT_US if plan.clock == "wall" else 0
+        real_time = plan.clock == "wall"
+        self._writer_timeout_us = WRITER_TIMEOUT_US if real_time else 0
+        self._longest_wait_us = REAL_TIME_LONGEST_WAIT_US if real_time else LONGEST_WAIT_US
         self._host = host
         self._run = run
         self._plan = plan
@@ -144,7 +148,7 @@ class Inputs:
         for buffer in watched:
             network.watch(buffer)
         began_us = network.now_us()
-        fetches = Backoff(began_us, FIRST_WAIT_US, LONGEST_WAIT_US, SECOND_WAIT_US)
+        fetches = Backoff(began_us, FIRST_WAIT_US, self._longest_wait_us, SECOND_WAIT_US)
         fetched = 0
         while lacking:
             yield min(fetches.due_us, self._sender.due_us)

@@ -63,7 +63,7 @@ def checked(run: Steered, log: Path, published: int) -> Recording:
 
 
 @pytest.mark.parametrize("time", [SIMULATED, WALL], ids=["lockstep", "real time"])
-@pytest.mark.parametrize("loss", ["0", "0.2"])
+@pytest.mark.parametrize("loss", ["0", "0.3"])
 def test_every_outside_message_is_recorded_once_and_replayed(
     launch: Launch, tmp_path: Path, ports: PortBlock, loss: str, time: str
 ) -> None:
