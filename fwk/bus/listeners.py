@@ -9,8 +9,8 @@ from fwk.clock import US_PER_S, monotonic_us
 
 LOOK_US = US_PER_S
 """Wall time between two searches for programs that listen."""
-FIRST_LOOK_US = US_PER_S // 4
-"""The same as long as no program listens."""
+FIRST_LOOK_US = US_PER_S // 20
+"""The same as long as no program listens: a program that begins to listen lacks the messages of at most that time."""
 THREADS_MAX = 8
 """Number of threads up to which all threads of a program are watched; of a larger one, those that ran lately."""
 QUEUE_LOOK_US = 10_000
@@ -31,7 +31,8 @@ class Listeners:
     """
 
     def __init__(self, port: int, own: int = 0) -> None:
-        self._own = str(own)
+        self._own = {str(own)} if own else set()
+        self._are_shown = True  # the kernel shows the sockets of this machine, at least the own one
         self._port = port
         self._look_us = 0
         self._queue_look_us = 0
@@ -43,13 +44,13 @@ class Listeners:
         self._runs: dict[str, str] = {}  # by thread: how often it had run at the last check
 
     def busy(self) -> list[str] | None:
-        """Returns the names of the listeners that are still busy; None if no listener exists."""
+        """Returns the names of the listeners that are still busy; None if no listener exists, as the kernel shows."""
         now_us = monotonic_us()
         if now_us >= self._look_us:
             self._look()
             self._look_us = now_us + (LOOK_US if self._inodes else FIRST_LOOK_US)
         if not self._inodes:
-            return None
+            return None if self._are_shown else []
         found: list[str] = []
         for process, threads in list(self._threads.items()):
             try:
@@ -64,6 +65,11 @@ class Listeners:
             self._held_up = self._with_datagrams()
         return list(dict.fromkeys(found + self._held_up))
 
+    def expect(self) -> None:
+        """Makes the next check look for listeners at once, as a program that has sent something may also listen."""
+        if not self._inodes:
+            self._look_us = 0
+
     def close(self) -> None:
         """Closes the files with the states."""
         for process in list(self._threads):
@@ -71,7 +77,8 @@ class Listeners:
 
     def _look(self) -> None:
         """Finds the listening processes, if they have changed, and their threads."""
-        inodes = {socket.inode for socket in sockets_on(self._port)} - {self._own}
+        found = {socket.inode for socket in sockets_on(self._port)}
+        self._are_shown, inodes = self._own <= found, found - self._own
         if inodes != self._inodes:
             self._inodes = inodes
             self._processes = {inode: process for inode, process in owners(inodes) if process != os.getpid()}

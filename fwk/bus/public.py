@@ -97,6 +97,7 @@ class PublicBus:
                 datagram, address = self._receiver.recvfrom(wire.DATAGRAM_MAX)
             except BlockingIOError:
                 return None
+            self._listeners.expect()
             if not datagram:
                 continue
             message = self._assembler.feed(datagram, address[1])

@@ -3,7 +3,8 @@
 A tick's messages become visible at once, several hundred in a large system. A receiver with default settings (30
 messages in the queue of a subscription, 208 KiB in the socket) loses most of such a burst. So the datagrams wait and
 leave a few at a time, and only when the listeners of this machine have handled those before. The run does not wait for
-any of this: the queue empties within a tick if it can, else over several. While no program listens, all leave at once.
+any of this: the queue empties within a tick if it can, else over several. While no program can listen, the datagrams
+are dropped.
 """
 
 from collections import deque
@@ -52,6 +53,8 @@ class PacedPublisher:
         busy_listeners: Callable[[], list[str] | None],
         patience_us: int,
     ) -> None:
+        self.unheard = False
+        """Whether no program can listen: what is put now would be dropped."""
         self.overrun = ""
         """Listener that was busy for so long that it may lack datagrams, the newest one; empty: none."""
         self._now_us = now_us
@@ -91,14 +94,18 @@ class PacedPublisher:
         self._group = min(max(LEAST, -(-self._size // slots)), LARGEST)
 
     def send_due(self) -> None:
-        """Sends the next group if its time has come."""
+        """Sends the next group if its time has come; drops all datagrams if no program can listen."""
         now_us = self._now_us()
+        if self.unheard:
+            self.unheard = self._busy_listeners() is None
         if not self._queue or now_us < self._due_us:
             return
         excess = self._size - QUEUE_MAX
         busy = self._busy_listeners()
+        self.unheard = busy is None
         if busy is None:
-            self._send_group(self._size)
+            self._queue.clear()
+            self._size = 0
             return
         self._busy_us = {name: self._busy_us.get(name, now_us) for name in busy}
         self._due_us = now_us + SLOT_US

@@ -122,6 +122,10 @@ class ChosenChannels:
 class Pace(Protocol):
     """Sends datagrams with pauses between them."""
 
+    @property
+    def unheard(self) -> bool:
+        """Whether no program can listen."""
+
     def put(self, datagrams: Iterable[bytes]) -> None:
         """Adds the datagrams of a message."""
 
@@ -138,8 +142,8 @@ class Mirror:
         self._came_from_there = frozenset(plan.outside)
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
-        """Publishes a message."""
-        if channel not in self._came_from_there:
+        """Publishes a message, if a program can listen."""
+        if not self._pace.unheard and channel not in self._came_from_there:
             self._pace.put(self._bus.datagrams(channel, data))
 
     def tick(self) -> None:

@@ -87,6 +87,26 @@ def test_a_listener_that_comes_later_is_found(monkeypatch: pytest.MonkeyPatch) -
         made.close()
 
 
+def test_an_expected_listener_is_looked_for_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(listeners, "monotonic_us", lambda: 1_000_000)
+    made = Listeners(9)
+    assert made.busy() is None
+    with listening() as (_, port):
+        made._port = port
+        assert made.busy() is None
+        made.expect()
+        assert made.busy() is not None
+        made.close()
+
+
+def test_listeners_may_exist_that_the_kernel_does_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(listeners, "sockets_on", lambda _: [])
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own:
+        own.bind(("127.0.0.1", 0))
+        made = Listeners(own.getsockname()[1], os.fstat(own.fileno()).st_ino)
+        assert made.busy() == []
+
+
 def test_this_process_is_not_a_listener_of_its_own() -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own:
         own.bind(("127.0.0.1", 0))

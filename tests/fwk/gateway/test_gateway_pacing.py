@@ -117,12 +117,25 @@ def test_the_rest_leaves_at_once_at_the_end() -> None:
     assert paced.publisher.overrun == "lcm-logger"
 
 
-def test_everything_leaves_at_once_if_no_program_listens() -> None:
+def test_nothing_is_sent_while_no_program_can_listen() -> None:
     paced = Paced()
     paced.busy = None
     paced.tick(1000)
     paced.publisher.send_due()
-    assert len(paced.sent) == 1000
+    assert (paced.sent, paced.publisher.waiting, paced.publisher.unheard) == ([], 0, True)
+
+
+def test_a_program_that_begins_to_listen_is_noticed() -> None:
+    paced = Paced()
+    paced.busy = None
+    paced.tick(10)
+    paced.publisher.send_due()
+    paced.busy = ""
+    paced.publisher.send_due()
+    assert not paced.publisher.unheard
+    paced.tick(10)
+    paced.pass_time(TICK_US)
+    assert paced.sent == [b"%d" % number for number in range(10)]
 
 
 def test_large_datagrams_count_as_several() -> None:

@@ -1,0 +1,33 @@
+"""The public bus knows whether a program can hear it."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from fwk.bus import listeners
+from fwk.bus.public import PublicBus
+from tests.harness.runs import PortBlock, pause
+
+NOW_US = 1_000_000
+
+
+@pytest.fixture
+def bus(ports: PortBlock, monkeypatch: pytest.MonkeyPatch) -> Iterator[PublicBus]:
+    """A bus that looks for listeners only once by itself, as its wall time stands still."""
+    monkeypatch.setattr(listeners, "monotonic_us", lambda: NOW_US)
+    made = PublicBus(ports.public_url)
+    yield made
+    made.close()
+
+
+def test_a_program_that_sends_is_a_listener_at_once(bus: PublicBus, ports: PortBlock) -> None:
+    assert bus.busy_listeners() is None
+    other = PublicBus(ports.public_url)
+    assert bus.busy_listeners() is None
+    other.publish("wish", b"1")
+    for _ in range(500):
+        if bus.receive():
+            break
+        pause(0.01)
+    assert bus.busy_listeners() is not None
+    other.close()
