@@ -24,6 +24,7 @@ from procs.vision.calibration import MirrorConfig
 
 _FASTEST_M_S = 8.0  # no robot drives faster
 _SHORT_S = 0.1  # for so long the velocity of the last tick tells the motion well enough
+_AHEAD_S = 0.02  # clocks of cameras may be that much ahead
 _USUAL = MirrorConfig().mirror()  # for which the expected errors are stated
 _AWAY_M = 2.0  # distance at which mirrors are compared
 
@@ -178,10 +179,13 @@ class Localization(Component):
     def _as_seen_now(self, points: line_points_t) -> SeenPoints:
         """Returns the points in the frame of the robot that has driven on since their exposure.
 
-        There are none if the way since then is not known: wrong places of lines would be worse.
+        There are none if the way since then is not known, or the exposure is still to come: wrong places of lines
+        would be worse.
         """
         seen_m = np.array((points.x_m, points.y_m)).T
         age_s = self.clock.since_s(points.capture_us) if points.capture_us else 0.0
+        if age_s < -_AHEAD_S or (self._last is None and age_s > _SHORT_S):
+            return _NOTHING
         if not len(seen_m) or age_s <= 0.0 or self._last is None:
             return SeenPoints(seen_m[:, 0], seen_m[:, 1])
         moved, turn_rad = (0.0, 0.0), age_s * self._turning_rad_s

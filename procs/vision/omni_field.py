@@ -18,6 +18,7 @@ from procs.vision.obstacle_finder import Obstacle, ObstacleFinder
 from procs.vision.scan import Scan
 
 _BESIDE_BODY_M = 0.03
+_MOST_RAYS = 720
 _WIDEST, _NARROWEST = 3.2, 0.4  # way over a line, as shares of its width ...
 _BLURRED_M = 0.15  # ... and over a narrow one as pixels show it
 
@@ -25,8 +26,9 @@ _BLURRED_M = 0.15  # ... and over a narrow one as pixels show it
 class OmniFieldConfig(DetectorConfig):
     """Settings of the detector of lines and obstacles."""
 
-    rays: int = Setting(default=180, ge=60, le=720)
-    """Scan lines around the robot; with fewer than 60 a robot 3 m away is between two of them."""
+    rays: int = Setting(default=180, ge=60, le=_MOST_RAYS)
+    """Scan lines around the robot; with fewer than 60 a robot 3 m away is between two of them. There are more if the
+    other robots are narrower than usual."""
     robot: RobotModel = ROBOT
     """Geometry of the other robots."""
     field: Field = Field()
@@ -146,9 +148,18 @@ def _begin_m(nearest_m: float | None, robot: RobotModel) -> float:
     return nearest_m or robot.radius_m + _BESIDE_BODY_M
 
 
+def _ray_count(config: OmniFieldConfig) -> int:
+    """Returns the number of rays, with which narrower robots are found as well as usual ones.
+
+    It grows faster than they get narrower, as a ball before a robot hides more of it.
+    """
+    narrower = max(1.0, ROBOT.radius_m / config.robot.radius_m)
+    return min(_MOST_RAYS, round(config.rays * narrower**3))
+
+
 def _star(config: OmniFieldConfig) -> Scan:
     nearest_m = _begin_m(config.nearest_m, config.robot)
-    return Scan.star(config.mirror.mirror(), config.rays, nearest_m, config.farthest_m)
+    return Scan.star(config.mirror.mirror(), _ray_count(config), nearest_m, config.farthest_m)
 
 
 def _rings(config: OmniFieldConfig) -> Scan:

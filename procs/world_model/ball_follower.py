@@ -14,6 +14,7 @@ from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.contact import RobotRow, Robots
 from procs.world_model.kicks import Kick, Kicks
+from procs.world_model.own_sights import OwnSights
 from procs.world_model.own_view import OwnView
 from procs.world_model.placed_ball import PlacedBall
 from procs.world_model.seen import Seen
@@ -63,6 +64,7 @@ class BallFollower:
         self.untold = Seen.NOTHING
         """Likeliest place of the ball in the newest own percept (0 or 1), until a message to the team has told it."""
         self._robot = robot
+        self._own_sights = OwnSights()
         self._placed = PlacedBall()
         self._held = False
         self.apply(config)
@@ -97,7 +99,7 @@ class BallFollower:
             self._take_held_ball(view)
         self._held = news.holds
         if news.percept:
-            self._look_for_ball(news.percept, view, self._config.age_s(news.percept.capture_us, news.now_us))
+            self._look_for_ball(news.percept, view, news.now_us)
         self._take_mates_ball(news)
         return kicked
 
@@ -115,18 +117,20 @@ class BallFollower:
         else:
             self.tracker.hold(self._robot, state, covariance)
 
-    def _look_for_ball(self, percept: ball_percept_t, view: OwnView, age_s: float) -> None:
+    def _look_for_ball(self, percept: ball_percept_t, view: OwnView, now_us: int) -> None:
         """Takes a percept of the ball, and keeps its likeliest place for the next message to the team."""
         config = self._config
+        age_s = config.age_s(percept.capture_us, now_us)
         seen = self.untold = view.ball(percept, age_s)
         sightings = []
         for candidate, height_m in ((seen, percept.z_m), *view.other_balls(percept, age_s)):
             widened = candidate.widened(config.sight_correlation, config.pose_correlation)
             sightings += self._sightings(self._robot, widened, height_m, view.pose[:2], age_s)
+        self._own_sights.note(now_us - round(age_s * US_PER_S), sightings)
         self._see(sightings)
 
     def _take_mates_ball(self, news: BallNews) -> None:
-        """Takes the ball that mates see, and the one in the mouth of a mate."""
+        """Takes the ball that mates see, and the one in a mate's mouth unless the own camera sees it elsewhere."""
         for message, mate in news.told:
             seen = ball_of(message).widened(self._config.team_correlation, 1.0)
             age_s = self._config.age_s(message.ball_capture_us or message.header.time_us, news.now_us)
@@ -134,7 +138,9 @@ class BallFollower:
             told_s = (news.now_us - message.header.time_us) / US_PER_S
             kicked_just_now = 0.0 <= (message.header.time_us - message.kick_us) / US_PER_S < news.iteration_s
             if mate.holds_ball and mate.localized and told_s <= STALE_S and not kicked_just_now:
-                self.tracker.hold(mate.name, *held_by(mate, self._mouth_m), told_s)
+                state, covariance = held_by(mate, self._mouth_m)
+                if not self._own_sights.contradict((state[0], state[1]), message.header.time_us, news.now_us):
+                    self.tracker.hold(mate.name, state, covariance, told_s)
 
     def _sightings(self, robot: str, seen: Seen, height_m: float, observer_m: Floats, age_s: float) -> list[Sighting]:
         """Returns a sighting of the ball (0 or 1), unless it is too old, from the future or impossible."""

@@ -40,6 +40,7 @@ class RobotTracks:
         self.ages_s: Floats = np.zeros(0)
         """(n): time since each robot was last seen."""
         self._sightings: Indices = np.zeros(0, np.intp)
+        self._again_s: Floats = np.zeros(0)  # age at which the frame after the first sighting has come
         self.ids: Indices = np.zeros(0, np.intp)
         """(n): number of each track since the first, which is 1; a robot that was lost gets a new one."""
         self._begun = 0
@@ -73,22 +74,28 @@ class RobotTracks:
         ]
 
     def predict(self, duration_s: float, timeout_s: float) -> None:
-        """Moves all tracks on by `duration_s`; drops those without a sighting for `timeout_s`."""
+        """Moves all tracks on by `duration_s`; drops those without a sighting for `timeout_s`.
+
+        A robot that was seen once may be a ghost: it is dropped after a quarter of that time, if the next frame has
+        come by then.
+        """
         self.ages_s = self.ages_s + duration_s
-        current = self.ages_s <= np.where(self._sightings > 1, timeout_s, timeout_s / 4)
+        once_s = np.maximum(timeout_s / 4, self._again_s)
+        current = self.ages_s <= np.where(self._sightings > 1, timeout_s, once_s)
         if not current.all():
             self._keep(current)
         motion, noise = _motion(duration_s)
         self._x = self._x @ motion.T
         self._p = motion @ self._p @ motion.T + noise
 
-    def see(self, positions_m: Floats, covariances_m2: Floats, age_s: float = 0.0) -> None:
+    def see(self, positions_m: Floats, covariances_m2: Floats, age_s: float = 0.0, next_s: float = 0.0) -> None:
         """Takes one robot's sightings of a frame, captured `age_s` ago, each of a different robot.
 
         Args:
             positions_m: (m, 2), world frame.
             covariances_m2: (m, 2, 2).
             age_s: time since the exposure.
+            next_s: time within which the next frame comes; 0: not known.
         """
         if not len(positions_m):
             return
@@ -100,7 +107,7 @@ class RobotTracks:
         if len(seen) < len(positions_m):
             free = np.ones(len(positions_m), dtype=bool)
             free[seen] = False
-            self._begin(positions_m[free], covariances_m2[free], age_s)
+            self._begin(positions_m[free], covariances_m2[free], age_s, next_s)
         self._join()
 
     def _assign(
@@ -125,7 +132,7 @@ class RobotTracks:
             tracks, seen, inverses, determinants = tracks[fits], seen[fits], inverses[fits], determinants[fits]
         return tracks, seen, None
 
-    def _begin(self, positions_m: Floats, covariances_m2: Floats, age_s: float) -> None:
+    def _begin(self, positions_m: Floats, covariances_m2: Floats, age_s: float, next_s: float) -> None:
         count = len(positions_m)
         states, covariances = np.zeros((count, _STATES)), np.zeros((count, _STATES, _STATES))
         states[:, :2], covariances[:, :2, :2] = positions_m, covariances_m2
@@ -135,6 +142,7 @@ class RobotTracks:
         self._x = np.concatenate((self._x, states))
         self._p = np.concatenate((self._p, covariances))
         self.ages_s = np.concatenate((self.ages_s, np.full(count, age_s)))
+        self._again_s = np.concatenate((self._again_s, np.full(count, age_s + next_s)))
         self._sightings = np.concatenate((self._sightings, np.ones(count, np.intp)))
         self.ids = np.concatenate((self.ids, self._begun + 1 + np.arange(count)))
         self._begun += count
@@ -158,6 +166,7 @@ class RobotTracks:
     def _keep(self, which: Flags) -> None:
         self._x, self._p = self._x[which], self._p[which]
         self.ages_s, self._sightings, self.ids = self.ages_s[which], self._sightings[which], self.ids[which]
+        self._again_s = self._again_s[which]
 
 
 def _pairs(predicted_m: list[list[float]], positions_m: list[list[float]]) -> tuple[list[int], list[int]]:

@@ -11,6 +11,8 @@ from procs.model.covariance import is_covariance
 from procs.model.frames import Flags, Floats
 from procs.model.geometry import plausible
 
+MOST_OBSTACLES = 50
+"""Obstacles of a frame that count: more are no robots, and would take the time of the tick."""
 _LEAST_M2 = 1e-6  # a millimetre: least variance of a sighting, which keeps filters regular
 
 

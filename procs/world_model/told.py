@@ -6,7 +6,7 @@ from lcmtypes.soccer import team_message_t
 from procs.model.covariance import is_covariance
 from procs.model.frames import Floats
 from procs.model.geometry import plausible, wrap_rad
-from procs.world_model.seen import Seen
+from procs.world_model.seen import MOST_OBSTACLES, Seen
 from procs.world_model.team import Mate
 
 _MATE_M_S = 0.3  # deviation of the velocity of a mate's mouth, whose turning is that of its last two messages
@@ -63,7 +63,7 @@ def held_by(mate: Mate, mouth_m: float) -> tuple[Floats, Floats]:
 
 def obstacles_of(message: team_message_t) -> Seen:
     """Returns the robots that the sender saw, world frame, without those of its team."""
-    seen = message.obstacles
+    seen = message.obstacles[:MOST_OBSTACLES]
     if not seen:
         return Seen.NOTHING
     places_m = [(one.x_m, one.y_m) for one in seen]

@@ -20,9 +20,11 @@ from lcmtypes.soccer import (
     team_message_t,
     world_model_t,
 )
+from procs.model.geometry import plausible
 from procs.model.robot import ABSENT, TEAM_NUMBERS, player_of
 from procs.model.units import US_PER_S
 from procs.world_model.ball_follower import BallFollower, BallNews
+from procs.world_model.frame_pace import FramePace
 from procs.world_model.opponents import strangers
 from procs.world_model.own_view import OwnView
 from procs.world_model.possession import holder_of
@@ -62,6 +64,7 @@ class WorldModel(Component):
         self._ball = BallFollower(self._robot, self.config)
         self._opponents = RobotTracks()
         self._silent = RobotTracks()  # mates that do not tell their places
+        self._frames = FramePace()  # of the camera that sees the obstacles
         self._apply_settings()
         self._team = Team()
         self._view: OwnView | None = None
@@ -155,7 +158,7 @@ class WorldModel(Component):
         message = self.team_message.value
         if kicked:
             fill_kick(message, kicked, self.kicker_state.value.kicks, self.clock.now_us)
-        if percept:
+        if percept and plausible(percept.z_m):
             message.ball_capture_us, message.ball_z_m = percept.capture_us or self.clock.now_us, percept.z_m
 
     def _follow_robots(
@@ -174,18 +177,20 @@ class WorldModel(Component):
         config, rules, now_s = self.config, self._rules, self.clock.now_s
         for tracks in filter(len, (self._opponents, self._silent)):
             tracks.predict(passed_s, config.opponent_timeout_s)
-        if self.obstacle_percepts.refreshed:
-            percepts = self.obstacle_percepts.value
-            age_s = config.age_s(percepts.capture_us, self.clock.now_us)
+        percepts = self.obstacle_percepts.value
+        age_s = config.age_s(percepts.capture_us, self.clock.now_us)
+        if self.obstacle_percepts.refreshed and 0.0 <= age_s <= STALE_S:
+            self._frames.note(percepts.capture_us or self.clock.now_us)
+            next_s = self._frames.next_s
             known, own = team.first(mates), self._own_team
             seen = strangers(view.obstacles(percepts, age_s, own), known, now_s - age_s, rules)
             self._untold_obstacles = seen
             silent = view.mates(percepts, age_s, own, places[:mates], config.mate_radius_m)
             silent = strangers(silent, known, now_s - age_s, rules)
-            self._silent.see(silent.positions_m, silent.covariances_m2, age_s)
+            self._silent.see(silent.positions_m, silent.covariances_m2, age_s, next_s)
             self.team_message.value.obstacles_capture_us = percepts.capture_us or self.clock.now_us
             seen = seen.widened(config.sight_correlation, config.pose_correlation)
-            self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
+            self._opponents.see(seen.positions_m, seen.covariances_m2, age_s, next_s)
         for message, _ in told:
             age_s = config.age_s(message.obstacles_capture_us or message.header.time_us, self.clock.now_us)
             if 0.0 <= age_s <= STALE_S:

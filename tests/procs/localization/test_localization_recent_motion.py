@@ -9,6 +9,7 @@ from fwk.testing import Bench
 from procs.localization.localization import Localization
 from procs.localization.recent_motion import MEMORY_US, RecentMotion
 from procs.localization.self_localizer import Motion
+from procs.model.units import US_PER_S
 from tests.procs.localization.localization_parts import FakeRobot, frames, until_localized, wander
 
 TICK_US = 40_000
@@ -90,3 +91,26 @@ def test_same_exposure_a_second_time_tells_nothing_new() -> None:
         deviations.append(float(np.trace(bench.port("pose").sent[-1].covariance)))
     assert deviations == sorted(deviations)
     assert deviations[0] < deviations[-1]
+
+
+def test_points_still_to_come_are_not_believed() -> None:
+    bench, robot = localized(9)
+    for _ in range(20):
+        robot.show(bench)
+        x_m, y_m = robot.white_points()
+        coming_us = round(bench.time_us + MEMORY_US)
+        bench.port("line_points").put(x_m=(x_m + 0.2).tolist(), y_m=y_m.tolist(), capture_us=coming_us)
+        bench.iterate()
+    assert np.hypot(*robot.error(bench)[:2]) < 0.05
+
+
+def test_old_points_need_odometry_to_be_believed() -> None:
+    bench, robot = Bench(Localization), FakeRobot(10)
+    robot.pose = np.array((3.0, 2.0, 0.0))
+    for _ in range(200):
+        x_m, y_m = robot.white_points()
+        bench.port("imu").put(heading_rad=0.0)
+        seen_us = max(1, round(bench.time_us - US_PER_S))
+        bench.port("line_points").put(x_m=x_m.tolist(), y_m=y_m.tolist(), capture_us=seen_us)
+        bench.iterate()
+    assert not bench.port("pose").sent[-1].localized

@@ -13,7 +13,14 @@ import pytest
 from fwk.testing import Bench, MemorySystem, settings_in
 from lcmtypes.core import frame_t
 from lcmtypes.soccer import ground_truth_t, obstacle_t
+from procs.model.ball import BallModel
+from procs.model.field import Field
+from procs.model.robot import RobotModel
 from procs.simulation.camera import Camera
+from procs.simulation.rendering.renderer import Pose, Renderer, Scene
+from procs.simulation.rendering.shapes import Bodies
+from procs.vision.calibration import MirrorConfig
+from procs.vision.colours import CYAN
 from procs.vision.omni_ball import OmniBall
 from procs.vision.omni_field import OmniField
 from tests.procs.vision.picture_parts import World, frame_of, robot, system
@@ -68,6 +75,23 @@ def test_percepts_of_an_earlier_frame_are_not_kept() -> None:
     assert (second.visible, second.x_m, second.y_m, second.confidence) == (False, 0.0, 0.0, 0.0)
     assert [points.n > 0 for points in field.port("line_points").sent] == [True, False]
     assert [percepts.n > 0 for percepts in field.port("obstacle_percepts").sent] == [True, False]
+
+
+@pytest.mark.parametrize("radius_m", [0.18, 0.25])
+def test_robots_of_any_width_are_found_behind_a_ball(radius_m: float) -> None:
+    other, ball = RobotModel(radius_m=radius_m, wheel_distance_m=0.1), BallModel()
+    renderer = Renderer(MirrorConfig().mirror(), Field(), Bodies.of(other, ball))
+    bench = Bench(OmniField, robot=other.model_dump())
+    found = 0
+    for number in range(12):
+        x, y = math.cos(0.5 * number), math.sin(0.5 * number)
+        ball_m = 3.0 - other.held_ball_m(ball)
+        scene = Scene(Pose(0.0, 0.0, 0.0), [(3.0 * x, 3.0 * y, CYAN)], (ball_m * x, ball_m * y, ball.radius_m))
+        bench.show("image", renderer.render(scene))
+        bench.iterate()
+        seen = bench.port("obstacle_percepts").sent[-1].obstacles
+        found += any(math.dist((one.x_m, one.y_m), (3.0 * x, 3.0 * y)) < 0.3 for one in seen)
+    assert found >= 11
 
 
 def test_without_a_new_frame_nothing_is_published() -> None:

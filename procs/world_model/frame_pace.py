@@ -1,0 +1,29 @@
+"""Pace of a camera: when its next frame comes."""
+
+from collections import deque
+from itertools import pairwise
+
+from procs.model.units import US_PER_S
+
+_FRAMES = 4  # the shortest of the times between them counts: others are those of lost frames
+_LATE = 1.4  # the next frame comes within that many such times
+_LONGEST_S = 1.0  # a camera that is silent for longer has no pace
+
+
+class FramePace:
+    """Learns the time between the frames of a camera from their exposures."""
+
+    def __init__(self) -> None:
+        self._exposures_us: deque[int] = deque(maxlen=_FRAMES)
+
+    def note(self, exposed_us: int) -> None:
+        """Takes the exposure of a new frame."""
+        newest_us = self._exposures_us[-1] if self._exposures_us else exposed_us
+        if not newest_us <= exposed_us <= newest_us + _LONGEST_S * US_PER_S:
+            self._exposures_us.clear()
+        self._exposures_us.append(exposed_us)
+
+    @property
+    def next_s(self) -> float:
+        """Time after an exposure within which the next one comes, give or take a lost frame; 0: not known."""
+        return _LATE * min((after - before for before, after in pairwise(self._exposures_us)), default=0) / US_PER_S

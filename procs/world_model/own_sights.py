@@ -1,0 +1,40 @@
+"""The ball in the newest frames of the own camera, which counts more than the word of a mate."""
+
+import math
+from collections import deque
+from collections.abc import Sequence
+
+from procs.model.units import US_PER_S
+from procs.world_model.ball_track import Sighting
+
+_FRAMES = 2  # a single one may show another thing
+_AGE_US = 300_000  # older frames tell nothing
+_ELSEWHERE_M = 1.0  # the places of two robots err by less ...
+_FASTEST_M_S = 13.0  # ... and a ball is no faster
+
+
+class OwnSights:
+    """Says whether the own camera sees the ball elsewhere than a mate that believes to hold it."""
+
+    def __init__(self) -> None:
+        self._frames: deque[tuple[int, list[tuple[float, float]]]] = deque(maxlen=_FRAMES)
+
+    def note(self, exposed_us: int, sightings: Sequence[Sighting]) -> None:
+        """Takes the things of a frame that may be the ball."""
+        self._frames.append((exposed_us, [(each.position_m[0], each.position_m[1]) for each in sightings]))
+
+    def contradict(self, place_m: tuple[float, float], told_us: int, now_us: int) -> bool:
+        """Returns whether the newest frames show the ball, and far from the place that a mate told at `told_us`.
+
+        A frame without a ball tells nothing: a robot may hide it.
+        """
+        if len(self._frames) < _FRAMES or now_us - self._frames[0][0] > _AGE_US:
+            return False
+        return all(
+            seen_m and self._is_far(place_m, seen_m, told_us - exposed_us) for exposed_us, seen_m in self._frames
+        )
+
+    @staticmethod
+    def _is_far(place_m: tuple[float, float], seen_m: Sequence[tuple[float, float]], between_us: int) -> bool:
+        reach_m = _ELSEWHERE_M + _FASTEST_M_S * abs(between_us) / US_PER_S
+        return all(math.dist(place_m, each) > reach_m for each in seen_m)
