@@ -7,7 +7,7 @@ from procs.model.field import Field, Point
 from procs.model.game_states import State
 from procs.model.teams import Ends, Team, team_number
 from procs.referee.reasons import Reason
-from procs.referee.restarts import Restart, corner_kick, goal_kick, kick_off
+from procs.referee.restarts import Restart, after_goal_line, corner_kick, goal_kick, kick_off
 from procs.referee.sight import Sight
 from procs.referee.touches import Touches
 
@@ -24,6 +24,8 @@ class Verdict(NamedTuple):
 def judge(place: Point, piece: State, touches: Touches, sight: Sight, ends: Ends, field: Field) -> Verdict:
     """Judges a ball in the goal at `place`, after the set piece with which this stretch of the game began."""
     conceding = ends.defender(place.x_m)
+    if not touches.last:
+        return Verdict(Team.NONE, after_goal_line(place, Team.NONE, field, ends))
     team = team_number(touches.last)
     if team is conceding:
         direct = touches.robots == {touches.taker} and len(sight.team(team)) > 1

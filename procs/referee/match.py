@@ -117,7 +117,9 @@ class Match:
             self.end_match()
 
     def end_match(self) -> None:
-        """Ends the match."""
+        """Ends the match, once."""
+        if self.over:
+            return
         self._enter(State.FROZEN, Team.NONE, stopped=True)
         self.calls.append(Call(self.state, Team.NONE))
 
@@ -155,6 +157,8 @@ class Match:
         if scored:
             self.goal(shooter)
         if self.shootout.decided and self.rules.automatic:
+            if not scored:
+                self.calls.append(Call(self.state, shooter, reason=Reason.MISSED))
             self.end_half()
         else:
             self.interrupt(self._next_penalty(), None if scored else Reason.MISSED)

@@ -28,8 +28,18 @@ class Sight(NamedTuple):
     """Robot that touched the ball last, in this tick or before."""
 
     def without(self, robots: frozenset[str]) -> "Sight":
-        """Returns the sight without robots that take no part in the game."""
-        return self._replace(robots={name: place for name, place in self.robots.items() if name not in robots})
+        """Returns the sight without robots that take no part in the game: what they do to the ball, nobody does."""
+        if robots.isdisjoint(self.robots) and robots.isdisjoint(event.robot for event in self.events):
+            return self
+        return self._replace(
+            robots={name: place for name, place in self.robots.items() if name not in robots},
+            events=[
+                event._replace(robot="") if event.robot in robots else event
+                for event in self.events
+                if event.kind in LEAVES or robots.isdisjoint((event.robot, event.other))
+            ],
+            last_touch="" if self.last_touch in robots else self.last_touch,
+        )
 
     @property
     def touching(self) -> dict[str, Point]:

@@ -200,7 +200,8 @@ class Whistle(Match):
 
     def _repeat(self, scene: Scene) -> bool:
         """Has the set piece repeated after a breach, twice at most; returns whether it does."""
-        foul = breach(scene, self.restart, self._stretch.excused, self._stretch.keeper)
+        stretch = self._stretch
+        foul = breach(scene, self.restart, stretch.excused, stretch.keeper, stretch.released)
         if foul is None or self._repeats >= _REPEATS:
             return False
         self._count_foul(foul)

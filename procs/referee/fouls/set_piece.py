@@ -1,4 +1,4 @@
-"""Set pieces: only the team that takes it plays the ball; robots keep distance and halves until it moves (2016)."""
+"""Set pieces: only the team that takes it plays the ball; robots keep distance and halves until it moves freely (2016)."""
 
 from procs.model.game_states import State
 from procs.model.teams import Team, team_number
@@ -11,10 +11,11 @@ _INTRUSION_M = 0.3
 """A robot may come nearer, or into the other half, by so much before the set piece is repeated."""
 
 
-def breach(scene: Scene, restart: Restart, excused: frozenset[str], keeper: str) -> Foul | None:
+def breach(scene: Scene, restart: Restart, excused: frozenset[str], keeper: str, released: bool) -> Foul | None:
     """Returns the breach that repeats a set piece; robots that were misplaced at its start are excused.
 
-    `keeper` is the goalkeeper that faced it at the start: one that takes its place later has left no area.
+    Rivals keep their distance until the ball is `released`, or a second robot has touched it: the taker may turn with
+    it first. `keeper` is the goalkeeper that faced it at the start: one that takes its place later has left no area.
     """
     if restart.team is Team.NONE:
         return None
@@ -22,12 +23,14 @@ def breach(scene: Scene, restart: Restart, excused: frozenset[str], keeper: str)
     taken = any(team_number(name) is restart.team for name in scene.touches.robots)  # by one that has left since, too
     if rivals and not taken:
         return Foul(min(rivals), Reason.EARLY_TOUCH, restart.spot)
-    if scene.touches.robots:
+    if released or len(scene.touches.robots) > 1:
         return None
     near = too_near(restart, scene.sight.robots, scene.ends, scene.rules.field, _INTRUSION_M)
-    intruders = sorted(set(near) - excused)
+    intruders = sorted(name for name in set(near) - excused if not taken or team_number(name) is restart.team.other)
     if intruders:
         return Foul(intruders[0], Reason.TOO_NEAR, restart.spot)
+    if taken:
+        return None
     crossed = sorted(set(in_wrong_half(restart, scene.sight.robots, scene.ends, _INTRUSION_M)) - excused)
     if crossed:
         return Foul(crossed[0], Reason.WRONG_HALF, restart.spot)

@@ -1,0 +1,112 @@
+"""Balls that no robot of the game has played: robots sent off, none at all, and rivals who wait for a free ball."""
+
+import pytest
+
+from procs.model.events import Event, Kind
+from procs.model.field import Point
+from procs.model.game_states import State
+from procs.model.teams import Team
+from procs.referee import halves, restarts
+from procs.referee.cards import Card
+from procs.referee.reasons import Reason
+from procs.referee.sight import Sight
+from tests.procs.referee.script import CYAN, MAGENTA, Script
+
+
+def set_piece(state: State, team: Team, x_m: float = 0.0, y_m: float = 5.0) -> Script:
+    """Returns a match in which a set piece has just been started."""
+    script = Script()
+    script.playing()
+    script.whistle.interrupt(restarts.Restart(state, team, Point(x_m, y_m)))
+    return script.started()
+
+
+def test_robot_with_a_red_card_scores_no_goal() -> None:
+    script = Script().playing()
+    script.touch("cyan2")
+    script.whistle.card("cyan3", Card.RED)
+    script.ball = Point(5.0, 0.0)
+    script.touch("cyan3", Kind.KICK)
+    assert script.whistle.state is State.PLAY
+    sight = Sight(script.ball, [Event(Kind.KICK, "cyan3", "", 5.0, 0.0, 8.0)], dict(script.robots))
+    assert sight.without(script.whistle.cards.sent_off).touching == {}
+    script.goal(11.2, "cyan3")
+    assert script.score == (0, 0), "the last touch of a player was in the own half"
+
+
+def test_robot_with_a_red_card_takes_no_set_piece() -> None:
+    script = set_piece(State.FREE_KICK, CYAN)
+    script.whistle.card("cyan3", Card.RED)
+    script.touch("cyan3")
+    script.touch("magenta2")
+    assert script.reasons[-1] == Reason.EARLY_TOUCH, "cyan has not taken it"
+
+
+def test_what_a_robot_sent_off_does_is_nobodys_deed() -> None:
+    events = [
+        Event(Kind.COLLISION, "cyan2", "cyan3", 0.0, 0.0, 4.0),
+        Event(Kind.OUT_END, "cyan3", "", 11.2, 3.0, 1.0),
+        Event(Kind.TOUCH, "cyan2", "", 0.0, 0.0, 1.0),
+    ]
+    seen = Sight(Point(0.0, 0.0), events, {"cyan2": Point(0.0, 0.0), "cyan3": Point(1.0, 0.0)}, last_touch="cyan3")
+    seen = seen.without(frozenset({"cyan3"}))
+    assert [(event.kind, event.robot) for event in seen.events] == [(Kind.OUT_END, ""), (Kind.TOUCH, "cyan2")]
+    assert (list(seen.robots), seen.last_touch) == (["cyan2"], "")
+
+
+@pytest.mark.parametrize("state", [State.KICK_OFF, State.CORNER_KICK, State.FREE_KICK])
+def test_ball_that_nobody_touched_scores_no_goal(state: State) -> None:
+    script = set_piece(state, CYAN)
+    script.goal(11.2, "")
+    assert (script.score, script.state) == ((0, 0), (State.DROP_BALL, Team.NONE, True))
+
+
+def test_deciding_penalty_that_nobody_touched_is_no_goal() -> None:
+    script = Script(penalties=1)
+    script.whistle.begin_half(halves.PENALTIES)
+    script.started().goal(11.2, "")
+    assert script.score == (0, 0)
+
+
+def test_rivals_keep_their_distance_until_the_ball_is_free() -> None:
+    script = set_piece(State.FREE_KICK, CYAN)
+    script.robots["cyan2"] = Point(-0.3, 5.0)
+    script.touch("cyan2")
+    script.robots["magenta2"] = Point(2.0, 5.0)
+    script.tick()
+    assert script.reasons[-1] == Reason.TOO_NEAR
+
+
+@pytest.mark.parametrize("second", ["", "cyan3"])
+def test_rivals_may_come_to_a_ball_that_was_played(second: str) -> None:
+    script = set_piece(State.FREE_KICK, CYAN)
+    script.touch("cyan2")
+    if second:
+        script.touch(second)
+    else:
+        script.roll(0.0, 5.6)
+    before = list(script.reasons)
+    script.robots["magenta2"] = Point(2.0, 5.0)
+    script.wait(0.5)
+    assert script.reasons == before
+
+
+def test_the_last_miss_of_the_penalties_is_recorded() -> None:
+    script = Script(penalties=1)
+    script.whistle.begin_half(halves.PENALTIES)
+    script.started().touch("cyan2", Kind.KICK)
+    script.goal(11.2, "cyan2")
+    script.started().touch("magenta2", Kind.KICK)
+    script.ball = Point(-11.2, 4.0)
+    script.tick(Event(Kind.OUT_END, "magenta2", "", *script.ball, 1.0))
+    assert script.whistle.over
+    assert (script.score, script.reasons[-1]) == ((1, 0), Reason.MISSED)
+    assert [call.team for call in script.whistle.calls if call.reason is Reason.MISSED] == [MAGENTA]
+
+
+def test_the_end_of_a_match_is_called_once() -> None:
+    script = Script()
+    script.whistle.end_match()
+    called = len(script.whistle.calls)
+    script.whistle.end_match()
+    assert len(script.whistle.calls) == called
