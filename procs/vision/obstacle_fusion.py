@@ -50,16 +50,17 @@ class ObstacleFusion(Component):
             if self.stereo_obstacles.refreshed and self._is_alone():
                 alone = self.stereo_obstacles.value
                 self._published = self.stereo_obstacles.header.sequence
-                self._publish(alone.capture_us, joined([], alone.obstacles, self._same_m))
+                self._publish(_captured_us(self.stereo_obstacles), joined([], alone.obstacles, self._same_m))
             return
         around, ahead = self.obstacle_percepts.value, self.stereo_obstacles.value
         number = self.stereo_obstacles.header.sequence
-        at_once = abs(ahead.capture_us - around.capture_us) <= self.config.apart_s * US_PER_S
+        captured_us = _captured_us(self.obstacle_percepts)
+        at_once = abs(_captured_us(self.stereo_obstacles) - captured_us) <= self.config.apart_s * US_PER_S
         together = self.stereo_obstacles.has_value and number != self._published and at_once
         if together:
             self._published = number
         found = joined(around.obstacles, ahead.obstacles if together else [], self._same_m)
-        self._publish(around.capture_us, found)
+        self._publish(captured_us, found)
 
     @property
     def _same_m(self) -> float:
@@ -74,6 +75,11 @@ class ObstacleFusion(Component):
         percepts = self.fused_obstacles.value = obstacle_percepts_t()
         percepts.capture_us, percepts.obstacles = capture_us, obstacles
         self.fused_obstacles.write()
+
+
+def _captured_us(percepts: Reads[obstacle_percepts_t]) -> int:
+    """Returns when the newest obstacles were seen: in the tick of their message where it states 0."""
+    return percepts.value.capture_us or percepts.header.time_us
 
 
 def joined(around: list[obstacle_t], ahead: list[obstacle_t], same_m: float) -> list[obstacle_t]:

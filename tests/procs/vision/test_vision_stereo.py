@@ -240,6 +240,35 @@ def test_fusion_joins_obstacles_of_a_slower_pair_once() -> None:
     assert counts == [2, 1, 2, 1]
 
 
+def put_obstacle(bench: Bench, port: str, x_m: float, time_us: int, capture_us: int) -> None:
+    bench.port(port).put(header={"time_us": time_us}, capture_us=capture_us, obstacles=[obstacle(x_m, 0.0)])
+
+
+@pytest.mark.parametrize(("around_us", "ahead_us"), [(0, 400_000), (400_000, 0), (0, 0)])
+def test_fusion_takes_0_for_the_tick_of_the_message(around_us: int, ahead_us: int) -> None:
+    bench = Bench(ObstacleFusion)
+    put_obstacle(bench, "obstacle_percepts", 1.0, 400_000, around_us)
+    put_obstacle(bench, "stereo_obstacles", 2.0, 400_000, ahead_us)
+    bench.iterate()
+    (fused,) = bench.port("fused_obstacles").sent
+    assert ([each.x_m for each in fused.obstacles], fused.capture_us) == ([1.0, 2.0], 400_000)
+
+
+def test_fusion_does_not_take_an_old_message_with_0_for_new() -> None:
+    bench = Bench(ObstacleFusion)
+    put_obstacle(bench, "stereo_obstacles", 2.0, 150_000, 0)
+    put_obstacle(bench, "obstacle_percepts", 1.0, 400_000, 0)
+    bench.iterate()
+    assert [each.x_m for each in bench.port("fused_obstacles").sent[-1].obstacles] == [1.0]
+
+
+def test_pair_alone_states_when_it_saw_its_obstacles() -> None:
+    bench = Bench(ObstacleFusion)
+    put_obstacle(bench, "stereo_obstacles", 2.0, 150_000, 0)
+    bench.iterate()
+    assert [each.capture_us for each in bench.port("fused_obstacles").sent] == [150_000]
+
+
 @pytest.mark.parametrize("swapped", [False, True])
 def test_fusion_joins_the_nearest_first(swapped: bool) -> None:
     """The second detector sees one of two robots that touch, a little beside it."""
