@@ -14,6 +14,7 @@ from procs.model.robot import ROBOT, RobotModel
 from procs.model.units import US_PER_S
 
 _SAME = 0.8  # of a robot's width: the middles of two robots are further apart
+_MOST = 100  # obstacles of each detector that count; a field has ten robots
 
 
 class ObstacleFusionConfig(Config):
@@ -85,9 +86,10 @@ def _captured_us(percepts: Reads[obstacle_percepts_t]) -> int:
 def joined(around: list[obstacle_t], ahead: list[obstacle_t], same_m: float) -> list[obstacle_t]:
     """Returns the obstacles of two detectors, robot frame; two at one place become their weighted mean.
 
-    Weights are the inverse covariances. The nearest two are joined first. Obstacles without a place are left out.
+    Weights are the inverse covariances. The nearest two are joined first. Obstacles without a place are left out, and
+    those of a detector beyond its 100 that are nearest to the robot.
     """
-    ours, theirs = ([each for each in found if plausible(each.x_m, each.y_m)] for found in (around, ahead))
+    ours, theirs = _nearest(around), _nearest(ahead)
     distances = sorted(
         (math.dist((one.x_m, one.y_m), (other.x_m, other.y_m)), i, j)
         for i, one in enumerate(ours)
@@ -99,6 +101,13 @@ def joined(around: list[obstacle_t], ahead: list[obstacle_t], same_m: float) -> 
             partners[i] = j
     made = [_mean(one, theirs[partners[i]]) if i in partners else one for i, one in enumerate(ours)]
     return [*made, *(other for j, other in enumerate(theirs) if j not in partners.values())]
+
+
+def _nearest(found: list[obstacle_t]) -> list[obstacle_t]:
+    """Returns the obstacles that count, in their order."""
+    placed = [each for each in found if plausible(each.x_m, each.y_m)]
+    nearest = sorted(range(len(placed)), key=lambda index: math.hypot(placed[index].x_m, placed[index].y_m))[:_MOST]
+    return [placed[index] for index in sorted(nearest)]
 
 
 def _mean(one: obstacle_t, other: obstacle_t) -> obstacle_t:

@@ -284,6 +284,16 @@ def test_fusion_leaves_out_what_has_no_place() -> None:
     assert joined([obstacle(math.inf, 0.0)], [obstacle(1e300, 0.0)], same_m=0.4) == []
 
 
+def test_fusion_keeps_the_nearest_of_very_many_obstacles() -> None:
+    far = [obstacle(5.0 + 0.01 * number, 0.0) for number in range(2000)]
+    near = [obstacle(-1.0 - 0.01 * number, 0.0) for number in reversed(range(60))]
+    made = joined([*far, *near], [obstacle(0.0, each.x_m) for each in far], same_m=0.4)
+    assert [(each.x_m, each.y_m) for each in made] == [
+        *((each.x_m, 0.0) for each in [*far[:40], *near]),
+        *((0.0, each.x_m) for each in far[:100]),
+    ]
+
+
 @pytest.mark.parametrize(("radius_m", "count"), [(0.12, 2), (0.25, 1)])
 def test_fusion_knows_how_wide_robots_are(radius_m: float, count: int) -> None:
     bench = Bench(ObstacleFusion, robot={"radius_m": radius_m})
