@@ -15,6 +15,8 @@ from procs.model.robot import ROBOT
 from procs.vision.obstacle_finder import Obstacle
 from procs.vision.stereo_rig import Grey, StereoRig
 
+LONGEST_PX = 400.0
+"""Focal length up to which robots are found: with a longer one they are too large and plain to be matched."""
 _NEAREST_M = 0.75  # ahead of the cameras: what is nearer is seen by the omnidirectional one alone
 _SUBPIXELS = 16  # OpenCV's disparities are in sixteenths of a pixel
 _LEAST_ROWS = 4  # of a column that a body covers

@@ -8,7 +8,7 @@ from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
 from procs.model.ball import BALL, BallModel
 from procs.model.robot import ROBOT, RobotModel
 from procs.vision.exposure import captured_us
-from procs.vision.stereo_finder import StereoFinder
+from procs.vision.stereo_finder import LONGEST_PX, StereoFinder
 from procs.vision.stereo_rig import StereoRig
 
 _ABOVE_BALL_M = 0.03
@@ -20,7 +20,7 @@ class StereoObsConfig(Config):
     """Settings of the detector."""
 
     rig: StereoRig = StereoRig()
-    """Calibration of the pair."""
+    """Calibration of the pair; frames of a focal length above 400 px are made smaller before they are searched."""
     robot: RobotModel = ROBOT
     """Geometry of the other robots."""
     ball: BallModel = BALL
@@ -28,7 +28,7 @@ class StereoObsConfig(Config):
     farthest_m: float = Setting(default=4.5, gt=0.5, le=20.0)
     """Obstacles further ahead are not reported."""
     deviation_px: float = Setting(default=0.35, gt=0.0, le=50.0)
-    """Standard deviation of a disparity."""
+    """Standard deviation of a disparity, in pixels of the frames that are searched."""
     latency_s: float = Setting(default=0.0, ge=0.0, le=1.0)
     """Time from the exposure of a frame to its publication, for cameras that do not state the exposure."""
 
@@ -63,7 +63,7 @@ class StereoObs(Component):
         config = self.config
         lowest_m = max(2 * config.ball.radius_m + _ABOVE_BALL_M, min(_LOWEST_M, _LOWEST * config.robot.height_m))
         self._finder = StereoFinder(
-            config.rig,
+            config.rig.reduced(LONGEST_PX),
             lowest_m=lowest_m,
             highest_m=max(StereoFinder.highest_m, lowest_m + _LEAST_BAND_M),
             farthest_m=config.farthest_m,

@@ -12,15 +12,16 @@ from procs.vision.framing import scaled
 Grey = NDArray[np.uint8]
 """Height x width."""
 
+_LEAST_WIDTH_PX, _LEAST_HEIGHT_PX = 160, 80
 _SHORTEST, _LONGEST = 0.25, 5.0  # focal length divided by the width of a frame
 
 
 class StereoRig(Config):
     """Calibration of the pair, which camera and detector share."""
 
-    width_px: int = Field(default=400, ge=160, le=1600)
+    width_px: int = Field(default=400, ge=_LEAST_WIDTH_PX, le=1600)
     """Width of each frame, in pixels."""
-    height_px: int = Field(default=200, ge=80, le=1200)
+    height_px: int = Field(default=200, ge=_LEAST_HEIGHT_PX, le=1200)
     """Height of each frame, in pixels."""
     focal_px: float = Field(default=300.0, gt=0.0)
     """Focal length in pixels: width in the picture of a thing that is as wide as it is far away."""
@@ -52,6 +53,19 @@ class StereoRig(Config):
     def rows(self) -> Floats:
         """(height_px): downward part of each row's direction, for one metre ahead."""
         return np.asarray((np.arange(self.height_px, dtype=np.float64) - (self.height_px - 1) / 2) / self.focal_px)
+
+    def reduced(self, focal_px: float) -> "StereoRig":
+        """Returns the calibration of the same view in smaller frames, with this focal length or the next larger one.
+
+        Returns the same calibration if its focal length is not larger or if its frames are the smallest.
+        """
+        least = max(_LEAST_WIDTH_PX / self.width_px, _LEAST_HEIGHT_PX / self.height_px)
+        share = max(focal_px / self.focal_px, least)
+        if share >= 1.0:
+            return self
+        width_px, height_px = round(share * self.width_px), round(share * self.height_px)
+        real_px = self.focal_px * width_px / self.width_px
+        return self.model_copy(update={"width_px": width_px, "height_px": height_px, "focal_px": real_px})
 
     def halves(self, pixels: Grey) -> tuple[Grey, Grey]:
         """Returns the frames of the left and the right camera from both side by side, in any size, grey or coloured.

@@ -141,6 +141,36 @@ def test_pairs_of_other_sizes_find_robots_from_near_on(rig: StereoRig) -> None:
         assert (found.x_m, found.y_m) == pytest.approx((ahead_m, 0.1), abs=0.03 + 0.02 * ahead_m**2)
 
 
+@pytest.mark.parametrize(
+    ("width_px", "height_px", "focal_px", "nearest_m"),
+    [(800, 400, 600.0, 1.2), (1600, 800, 1200.0, 1.2), (1000, 333, 790.0, 1.2), (400, 200, 1200.0, 2.0)],
+)
+def test_fine_pictures_and_long_lenses_show_robots(
+    width_px: int, height_px: int, focal_px: float, nearest_m: float
+) -> None:
+    rig = StereoRig(width_px=width_px, height_px=height_px, focal_px=focal_px)
+    renderer, bench, rng = StereoRenderer(rig, Field(), Bodies()), Bench(StereoObs, rig=rig), np.random.default_rng(1)
+    for ahead_m in np.linspace(nearest_m, 4.0, 6).tolist():
+        left_m = float(rng.uniform(-0.1, 0.1)) * ahead_m * width_px / focal_px
+        frame = renderer.render(Pose(0.0, 0.0, 0.0), [(ahead_m, left_m)])
+        bench.show("stereo_image", np.clip(frame + 5.0 * rng.standard_normal(frame.shape), 0, 255).astype(np.uint8))
+        bench.iterate()
+        (found,) = bench.port("stereo_obstacles").sent[-1].obstacles
+        assert (found.x_m, found.y_m) == pytest.approx((ahead_m, left_m), abs=0.03 + 0.015 * ahead_m**2)
+
+
+def test_reduced_rig_looks_the_same_way() -> None:
+    rig = StereoRig(width_px=1000, height_px=334, focal_px=800.0)
+    small = rig.reduced(400.0)
+    assert (small.width_px, small.height_px, small.focal_px) == (500, 167, 400.0)
+    assert RIG.reduced(400.0) is RIG
+    strip = StereoRig(width_px=1600, height_px=80, focal_px=1200.0)
+    assert strip.reduced(400.0) is strip
+    narrow = StereoRig(width_px=401, height_px=300, focal_px=2000.0).reduced(400.0)
+    assert narrow.width_px == 160
+    assert narrow.focal_px == pytest.approx(2000.0 * 160 / 401)
+
+
 def test_heights_looked_at_fit_low_robots_and_large_balls() -> None:
     low = RobotModel(height_m=0.32)
     frame = StereoRenderer(RIG, Field(), Bodies.of(low, BALL)).render(Pose(0.0, 0.0, 0.0), [(2.5, 0.0)])
