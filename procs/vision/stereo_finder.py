@@ -62,6 +62,11 @@ class StereoFinder:
         nearest_px = self.rig.focal_px * self.rig.baseline_m / _NEAREST_M
         return 16 * max(1, min(math.ceil(nearest_px / 16), self.rig.width_px // 32))
 
+    @property
+    def nearest_m(self) -> float:
+        """Distance ahead of the cameras from which on surfaces are measured."""
+        return self.rig.focal_px * self.rig.baseline_m / (self.disparities - 1)
+
     def disparity(self, pixels: Grey) -> Floats:
         """Returns the disparity (height, width) in pixels of the left frame's pixels; NaN where it is not known."""
         if not self._matcher:

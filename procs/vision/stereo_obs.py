@@ -2,6 +2,7 @@
 
 import cv2
 from pydantic import Field as Setting
+from pydantic import ValidationInfo, field_validator
 
 from fwk import Component, Config, Image, Writes
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
@@ -32,6 +33,29 @@ class StereoObsConfig(Config):
     latency_s: float = Setting(default=0.0, ge=0.0, le=1.0)
     """Time from the exposure of a frame to its publication, for cameras that do not state the exposure."""
 
+    @field_validator("ball")
+    @classmethod
+    def _below_robots(cls, ball: BallModel, info: ValidationInfo) -> BallModel:
+        """Refuses a ball above which there is nothing of a robot, which has been checked before."""
+        if "robot" in info.data:
+            height_m, lowest_m = info.data["robot"].height_m, _lowest_m(info.data["robot"], ball)
+            if height_m <= lowest_m:
+                raise ValueError(
+                    f"above a ball of {2 * ball.radius_m:g} m, heights from {lowest_m:g} m on count; "
+                    f"robots of {height_m:g} m should be higher, or the ball smaller"
+                )
+        return ball
+
+    @field_validator("farthest_m")
+    @classmethod
+    def _not_nearer(cls, farthest_m: float, info: ValidationInfo) -> float:
+        """Refuses a distance up to which the pair, checked before, measures nothing."""
+        if "rig" in info.data:
+            nearest_m = StereoFinder(info.data["rig"].reduced(LONGEST_PX)).nearest_m
+            if nearest_m >= farthest_m:
+                raise ValueError(f"the pair measures from {nearest_m:.3f} m on; farthest_m should be greater")
+        return farthest_m
+
 
 class StereoObs(Component):
     """Publishes the obstacles of every pair."""
@@ -61,7 +85,7 @@ class StereoObs(Component):
 
     def config_changed(self) -> None:
         config = self.config
-        lowest_m = max(2 * config.ball.radius_m + _ABOVE_BALL_M, min(_LOWEST_M, _LOWEST * config.robot.height_m))
+        lowest_m = _lowest_m(config.robot, config.ball)
         self._finder = StereoFinder(
             config.rig.reduced(LONGEST_PX),
             lowest_m=lowest_m,
@@ -70,3 +94,8 @@ class StereoObs(Component):
             radius_m=config.robot.radius_m,
             deviation_px=config.deviation_px,
         )
+
+
+def _lowest_m(robot: RobotModel, ball: BallModel) -> float:
+    """Returns the lower edge of the heights that are looked at."""
+    return max(2 * ball.radius_m + _ABOVE_BALL_M, min(_LOWEST_M, _LOWEST * robot.height_m))

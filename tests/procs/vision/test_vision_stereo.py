@@ -1,6 +1,7 @@
-"""Obstacles from a stereo pair: places, honesty, what is not an obstacle, and fusion with the other camera."""
+"""Obstacles from a stereo pair: places, honesty, what is not an obstacle, and settings."""
 
 import math
+from typing import Any
 
 import cv2
 import numpy as np
@@ -8,8 +9,7 @@ import pytest
 
 from fwk import Component, VisionMaster
 from fwk.model.errors import PlanError
-from fwk.testing import Bench, MemorySystem, launch_plan, system_of
-from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
+from fwk.testing import Bench, MemorySystem, launch_plan
 from procs.model.algebra import Floats
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
@@ -18,7 +18,6 @@ from procs.simulation.rendering.renderer import Pose
 from procs.simulation.rendering.shapes import Bodies
 from procs.simulation.rendering.stereo_renderer import StereoRenderer
 from procs.vision.obstacle_finder import Obstacle
-from procs.vision.obstacle_fusion import ObstacleFusion, joined
 from procs.vision.stereo_finder import StereoFinder
 from procs.vision.stereo_obs import StereoObs
 from procs.vision.stereo_rig import StereoRig
@@ -36,13 +35,6 @@ def seen(*places_m: tuple[float, float], seed: int = 1, noise_levels: float = 5.
     frame = RENDERER.render(OWN, robots)
     noise = noise_levels * np.random.default_rng(seed).standard_normal(frame.shape)
     return FINDER.find(np.clip(frame + noise, 0, 255).astype(np.uint8))
-
-
-def obstacle(x_m: float, y_m: float, along_m: float = 0.1, across_m: float = 0.1) -> obstacle_t:
-    made = obstacle_t()
-    made.x_m, made.y_m, made.radius_m = x_m, y_m, 0.25
-    made.covariance_m2 = [[along_m**2, 0.0], [0.0, across_m**2]]
-    return made
 
 
 @pytest.mark.parametrize("ahead_m", [1.2, 2.0, 3.0, 4.0])
@@ -202,6 +194,53 @@ def test_pair_that_cannot_be_is_refused(setting: str, mistake: str) -> None:
     assert mistake in str(raised.value)
 
 
+@pytest.mark.parametrize(
+    ("settings", "mistake"),
+    [
+        (
+            "*/stereo_obs.farthest_m=0.6",
+            "'farthest_m' is 0.6; the pair measures from 0.762 m on; farthest_m should be greater",
+        ),
+        (
+            "shared.rig.focal_px=900 shared.rig.baseline_m=0.6 */stereo_obs.farthest_m=3",
+            "'farthest_m' is 3; the pair measures from 3.042 m on; farthest_m should be greater",
+        ),
+        (
+            "shared.robot.height_m=0.25",
+            "heights from 0.25 m on count; robots of 0.25 m should be higher, or the ball smaller",
+        ),
+        (
+            "shared.ball.radius_m=0.29",
+            "above a ball of 0.58 m, heights from 0.61 m on count; robots of 0.6 m should be higher",
+        ),
+    ],
+)
+def test_settings_with_which_no_robot_is_seen_are_refused(settings: str, mistake: str) -> None:
+    with pytest.raises(PlanError) as raised:
+        launch_plan("one-robot.yaml", tuple(settings.split()))
+    assert mistake in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("settings", "ahead_m"),
+    [
+        ({"farthest_m": 0.8}, 1.1),
+        ({"rig": {"focal_px": 2000.0}}, 4.0),
+        ({"rig": {"focal_px": 900.0, "baseline_m": 0.6}}, 4.0),
+        ({"robot": {"height_m": 0.28}}, 2.4),
+        ({"ball": {"radius_m": 0.29}, "robot": {"height_m": 0.65}}, 2.4),
+    ],
+)
+def test_unusual_settings_show_robots(settings: dict[str, Any], ahead_m: float) -> None:
+    bench = Bench(StereoObs, **settings)
+    config = bench.component.config
+    renderer = StereoRenderer(config.rig, Field(), Bodies.of(config.robot, config.ball))
+    bench.show("stereo_image", renderer.render(Pose(0.0, 0.0, 0.0), [(ahead_m, 0.0)]))
+    bench.iterate()
+    (found,) = bench.port("stereo_obstacles").sent[-1].obstacles
+    assert (found.x_m, found.y_m) == pytest.approx((ahead_m, 0.0), abs=0.15)
+
+
 def test_picture_of_another_size_is_scaled() -> None:
     frame = RENDERER.render(
         OWN, [(OWN.x_m + 2.0 * math.cos(OWN.heading_rad), OWN.y_m + 2.0 * math.sin(OWN.heading_rad))]
@@ -235,131 +274,6 @@ def test_frame_without_usable_colours_is_refused() -> None:
     bench.show("stereo_image", np.zeros((100, 200, 2), np.uint8))
     with pytest.raises(ValueError, match="the frame is 100 x 200 x 2; the pair needs grey or three colours"):
         bench.iterate()
-
-
-def test_fusion_weights_by_covariance_and_keeps_the_rest() -> None:
-    around = [obstacle(2.0, 0.0, along_m=0.2, across_m=0.05), obstacle(-1.0, 1.0)]
-    ahead = [obstacle(2.2, 0.1, along_m=0.05, across_m=0.2), obstacle(3.0, 1.0)]
-    first, behind, new = joined(around, ahead, same_m=0.4)
-    assert (first.x_m, first.y_m) == pytest.approx((2.0 + 0.2 * 16 / 17, 0.1 / 17))
-    assert first.covariance_m2[0][0] < 0.05**2
-    assert (behind.x_m, new.x_m) == (-1.0, 3.0)
-
-
-def test_fusion_takes_percepts_of_one_time_only() -> None:
-    bench = Bench(ObstacleFusion)
-    for capture_us, count in ((100_000, 1), (10_000, 2)):
-        for port, x_m, time_us in (("stereo_obstacles", 2.1, capture_us), ("obstacle_percepts", 1.0, 110_000)):
-            percepts = obstacle_percepts_t()
-            percepts.capture_us, percepts.obstacles = time_us, [obstacle(x_m if count == 1 else 1.0, 0.0)]
-            bench.port(port).put(percepts)
-        bench.iterate()
-    first, second = bench.port("fused_obstacles").sent
-    assert ([each.x_m for each in first.obstacles], first.capture_us) == ([1.0, 2.1], 110_000)
-    assert [each.x_m for each in second.obstacles] == [1.0]
-
-
-def test_fusion_joins_obstacles_of_a_slower_pair_once() -> None:
-    bench, counts = Bench(ObstacleFusion), []
-    for frame in range(4):
-        if frame % 2 == 0:
-            bench.port("stereo_obstacles").put(capture_us=bench.time_us + 1, obstacles=[obstacle(2.0, 0.0)])
-        bench.port("obstacle_percepts").put(capture_us=bench.time_us + 1, obstacles=[obstacle(-1.0, 0.0)])
-        bench.iterate()
-        counts.append(bench.port("fused_obstacles").sent[-1].n)
-    assert counts == [2, 1, 2, 1]
-
-
-def put_obstacle(bench: Bench, port: str, x_m: float, time_us: int, capture_us: int) -> None:
-    bench.port(port).put(header={"time_us": time_us}, capture_us=capture_us, obstacles=[obstacle(x_m, 0.0)])
-
-
-@pytest.mark.parametrize(("around_us", "ahead_us"), [(0, 400_000), (400_000, 0), (0, 0)])
-def test_fusion_takes_0_for_the_tick_of_the_message(around_us: int, ahead_us: int) -> None:
-    bench = Bench(ObstacleFusion)
-    put_obstacle(bench, "obstacle_percepts", 1.0, 400_000, around_us)
-    put_obstacle(bench, "stereo_obstacles", 2.0, 400_000, ahead_us)
-    bench.iterate()
-    (fused,) = bench.port("fused_obstacles").sent
-    assert ([each.x_m for each in fused.obstacles], fused.capture_us) == ([1.0, 2.0], 400_000)
-
-
-def test_fusion_does_not_take_an_old_message_with_0_for_new() -> None:
-    bench = Bench(ObstacleFusion)
-    put_obstacle(bench, "stereo_obstacles", 2.0, 150_000, 0)
-    put_obstacle(bench, "obstacle_percepts", 1.0, 400_000, 0)
-    bench.iterate()
-    assert [each.x_m for each in bench.port("fused_obstacles").sent[-1].obstacles] == [1.0]
-
-
-def test_pair_alone_states_when_it_saw_its_obstacles() -> None:
-    bench = Bench(ObstacleFusion)
-    put_obstacle(bench, "stereo_obstacles", 2.0, 150_000, 0)
-    bench.iterate()
-    assert [each.capture_us for each in bench.port("fused_obstacles").sent] == [150_000]
-
-
-@pytest.mark.parametrize("swapped", [False, True])
-def test_fusion_joins_the_nearest_first(swapped: bool) -> None:
-    """The second detector sees one of two robots that touch, a little beside it."""
-    around = [obstacle(2.0, 0.35), obstacle(2.0, -0.15)]
-    made = joined(around[::-1] if swapped else around, [obstacle(2.0, -0.05, across_m=0.02)], same_m=0.45)
-    places_m = sorted(each.y_m for each in made)
-    assert places_m == [pytest.approx(-0.05, abs=0.01), 0.35]
-
-
-def test_fusion_leaves_out_what_has_no_place() -> None:
-    (one,) = joined([obstacle(2.0, 0.0)], [obstacle(math.nan, 0.0), obstacle(2.1, 0.0)], same_m=0.4)
-    assert one.x_m == pytest.approx(2.05)
-    assert joined([obstacle(math.inf, 0.0)], [obstacle(1e300, 0.0)], same_m=0.4) == []
-
-
-def test_fusion_keeps_the_nearest_of_very_many_obstacles() -> None:
-    far = [obstacle(5.0 + 0.01 * number, 0.0) for number in range(2000)]
-    near = [obstacle(-1.0 - 0.01 * number, 0.0) for number in reversed(range(60))]
-    made = joined([*far, *near], [obstacle(0.0, each.x_m) for each in far], same_m=0.4)
-    assert [(each.x_m, each.y_m) for each in made] == [
-        *((each.x_m, 0.0) for each in [*far[:40], *near]),
-        *((0.0, each.x_m) for each in far[:100]),
-    ]
-
-
-@pytest.mark.parametrize(("radius_m", "count"), [(0.12, 2), (0.25, 1)])
-def test_fusion_knows_how_wide_robots_are(radius_m: float, count: int) -> None:
-    bench = Bench(ObstacleFusion, robot={"radius_m": radius_m})
-    for port, y_m in (("obstacle_percepts", 0.0), ("stereo_obstacles", 0.3)):
-        bench.port(port).put(capture_us=40_000, obstacles=[obstacle(2.0, y_m)])
-    bench.iterate()
-    assert bench.port("fused_obstacles").sent[-1].n == count
-
-
-def test_pair_sees_alone_while_the_other_camera_is_silent() -> None:
-    bench = Bench(ObstacleFusion)
-    bench.port("obstacle_percepts").put(capture_us=1, obstacles=[obstacle(-1.0, 0.0)])
-    bench.iterate()
-    for _ in range(10):
-        bench.port("stereo_obstacles").put(capture_us=bench.time_us, obstacles=[obstacle(2.0, 0.0)])
-        bench.iterate()
-    sent = bench.port("fused_obstacles").sent
-    assert [[each.x_m for each in percepts.obstacles] for percepts in (sent[0], sent[-1])] == [[-1.0], [2.0]]
-    assert 0.25 <= (sent[1].header.time_us - sent[0].header.time_us) / 1e6 <= 0.4
-    assert [percepts.capture_us for percepts in sent] == sorted(percepts.capture_us for percepts in sent)
-
-
-def test_impossible_covariance_does_not_spoil_the_other() -> None:
-    broken = obstacle(2.0, 0.0)
-    broken.covariance_m2 = [[math.nan, 0.0], [0.0, 1.0]]
-    (kept,) = joined([broken], [obstacle(2.1, 0.0)], same_m=0.4)
-    assert kept.x_m == 2.1
-
-
-def test_lone_robot_of_the_launch_file_sees_with_both() -> None:
-    system = system_of("one-robot.yaml", lambda name: name.startswith(("world", "cyan1", "team_cyan")))
-    system.tick(10)
-    fused = [obstacle_percepts_t.decode(sent) for sent in system.sent["cyan1/fused_obstacles"]]
-    stereo = [obstacle_percepts_t.decode(sent) for sent in system.sent["cyan1/stereo_obstacles"]]
-    assert len(fused) == len(stereo) == 5
-    assert all(one.capture_us == other.capture_us for one, other in zip(fused, stereo, strict=True))
 
 
 def test_disparity_tells_the_distance() -> None:
