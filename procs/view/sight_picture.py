@@ -4,6 +4,7 @@ The web console draws the same over live pictures.
 """
 
 import argparse
+import json
 import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -98,6 +99,12 @@ def _of_tick(sent: Sequence[bytes], kind: type[T], tick: int) -> T:
     return next((each for each in found if each.header.tick == tick), kind())
 
 
+def _included(launch: str) -> str:
+    """Returns what a file elsewhere includes for a launch file: its path, or the name of one that comes with fwk."""
+    places = (Path(launch), Path("launch") / launch)
+    return next((str(place.absolute()) for place in places if place.is_file()), launch)
+
+
 def main() -> None:
     """Plays the beginning of a match and writes the picture."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -113,8 +120,9 @@ def main() -> None:
         raise SystemExit(f"'{asked.file}' cannot be written: there is no folder '{asked.file.parent}'")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "sight.yaml"
-        file.write_text(_LAUNCH.format(file=asked.launch, config=_FINE))
+        file.write_text(_LAUNCH.format(file=json.dumps(_included(asked.launch)), config=_FINE))
         try:
+            launch_plan(asked.launch)  # its mistakes name the file that was asked for
             settings = settings_in(str(file), f"{asked.robot}/camera")
         except KeyError as error:
             names = (each.name for each in launch_plan(str(file)).components)

@@ -69,7 +69,7 @@ def test_command_draws_the_camera_of_a_match(tmp_path: Path, monkeypatch: pytest
     [
         (["sight.xyz"], "'sight.xyz' ends in '.xyz'; it should end in .png or .jpg"),
         (["nowhere/sight.png"], "'nowhere/sight.png' cannot be written: there is no folder 'nowhere'"),
-        (["sight.png", "--launch", "soccer-1vs1.yaml"], "there is no 'soccer-1vs1.yaml' to include"),
+        (["sight.png", "--launch", "soccer-1vs1.yaml"], "no such launch file; did you mean 'soccer-1v1.yaml'?"),
         (
             ["sight.png", "--robot", "cyan9"],
             "soccer.yaml: no camera of cyan9; robots with one: cyan1, cyan2, cyan3, cyan4",
@@ -86,3 +86,16 @@ def test_command_says_what_is_wrong(words: list[str], mistake: str, monkeypatch:
     with pytest.raises(SystemExit) as raised:
         sight_picture.main()
     assert mistake in str(raised.value)
+
+
+@pytest.mark.parametrize("launch", ["my own.yaml", "./my own.yaml", "parts/mine.yaml", "there.yaml"])
+def test_command_takes_launch_files_of_the_user(launch: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They are given by their paths, or lie in `launch/`."""
+    for folder, name in (("", "my own"), ("parts", "mine"), ("launch", "there")):
+        (tmp_path / folder).mkdir(exist_ok=True)
+        (tmp_path / folder / f"{name}.yaml").write_text("include: soccer-1v1.yaml\nname: mine\n")
+    monkeypatch.chdir(tmp_path)
+    words = ["sight_picture", "sight.png", "--launch", launch, "--robot", "cyan1", "--time", "0.3"]
+    monkeypatch.setattr("sys.argv", words)
+    sight_picture.main()
+    assert cv2.imread(str(tmp_path / "sight.png")) is not None
