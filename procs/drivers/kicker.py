@@ -8,7 +8,7 @@ from pydantic import PositiveFloat
 
 from fwk import Clock, Component, Config, Logger, Reads, Request, Serves, Writes
 from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_drive_t, kicker_sensor_t, kicker_state_t
-from procs.model.geometry import clamp
+from procs.model.geometry import BOUND, clamp, plausible
 from procs.model.robot import ROBOT, RobotModel
 
 _STEEPEST_RAD = math.pi / 3  # of a lob
@@ -114,8 +114,11 @@ class Kicker(Component):
 
     def _refuse_impossible(self) -> None:
         for request in self.kick.waiting:
-            if not request.value.speed_m_s > 0:
-                request.reject(f"speed_m_s is {request.value.speed_m_s}; it should be above 0")
+            speed_m_s, elevation_rad = request.value.speed_m_s, request.value.elevation_rad
+            if not 0.0 < speed_m_s < BOUND:
+                request.reject(f"speed_m_s is {speed_m_s}; it should be above 0 and below {BOUND:g}")
+            elif not plausible(elevation_rad):
+                request.reject(f"elevation_rad is {elevation_rad}; it should be from 0 to pi/3")
 
     def _fail_open(self, reason: str, besides: Request[kick_command_t] | None = None) -> None:
         for request in self.kick.open:

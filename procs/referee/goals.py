@@ -24,7 +24,7 @@ class Verdict(NamedTuple):
 def judge(place: Point, piece: State, touches: Touches, sight: Sight, ends: Ends, field: Field) -> Verdict:
     """Judges a ball in the goal at `place`, after the set piece with which this stretch of the game began."""
     conceding = ends.defender(place.x_m)
-    if not touches.last:
+    if touches.disturbed:
         return Verdict(Team.NONE, after_goal_line(place, Team.NONE, field, ends))
     team = team_number(touches.last)
     if team is conceding:

@@ -24,6 +24,8 @@ class Touches:
         """Robot that touched the ball last; of several in a tick the one that the sight names."""
         self.place = spot
         """Place of the last touch; before the first, that of the ball."""
+        self.disturbed = False
+        """A robot that takes no part in the game has touched the ball since."""
         self.again = False
         """The taker has touched the ball again after a free roll, before another robot did."""
         self.double = False
@@ -45,7 +47,8 @@ class Touches:
                 self.again, self.double = True, bool(sight.mates(robot))
             self.taker = self.taker or robot
             self.robots.add(robot)
-            self.last, self.place = robot, place
+            self.last, self.place, self.disturbed = robot, place, False
+        self.disturbed = self.disturbed or sight.disturbed
 
     def watch_rivals(self, duration_s: float, sight: Sight, carrier: str) -> None:
         """Notes whether rivals of the taker have had the ball; `carrier` is the robot that carries it now."""

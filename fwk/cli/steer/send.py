@@ -84,11 +84,15 @@ def made(type_name: str, fields: list[str]) -> Any:
     """Returns a message with these fields set.
 
     Raises:
-        MessageError: no such type or field, or a value that is not YAML.
+        MessageError: no such type or field, one that is given twice, or a value that is not YAML.
     """
     message: Any = messages.type_named(type_name)()
+    given: set[str] = set()
     for text in fields:
         path, equals, typed = text.partition("=")
+        if path in given:
+            raise MessageError(f"{path} is given twice")
+        given.add(path)
         problems = Problems()
         try:
             refuse_deep_nesting(typed)

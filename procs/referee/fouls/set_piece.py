@@ -1,4 +1,4 @@
-"""Set pieces: only the team that takes it plays the ball; robots keep distance and halves until it moves freely (2016)."""
+"""Set pieces: only the team that takes it plays the ball; rivals keep their distance until it is free (2016)."""
 
 from procs.model.game_states import State
 from procs.model.teams import Team, team_number

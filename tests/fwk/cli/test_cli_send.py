@@ -27,6 +27,7 @@ def test_fields_are_set_by_name_and_others_are_zero() -> None:
         (["a.b=1"], "has no field 'a.b'"),
         (["vx_m_s=true"], "vx_m_s is true; it should be a number (double)"),
         (["enabled=1"], "enabled is 1; it should be true or false"),
+        (["vx_m_s=1", "enabled=true", "vx_m_s=2"], "vx_m_s is given twice"),
     ],
 )
 def test_values_that_do_not_fit_are_named(fields: list[str], error: str) -> None:

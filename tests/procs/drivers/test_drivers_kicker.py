@@ -122,9 +122,14 @@ def test_replaced_kick_that_comes_late_counts_as_it_was(kicker: Bench) -> None:
 
 
 @pytest.mark.parametrize("sensor", [READY, EMPTY, {"ball_held": True, "charged": False}])
-@pytest.mark.parametrize("speed_m_s", [0.0, -3.0, float("nan")])
-def test_implausible_speed_is_refused_at_once(kicker: Bench, speed_m_s: float, sensor: dict[str, bool]) -> None:
-    kicker.kick.put(speed_m_s=speed_m_s)
+@pytest.mark.parametrize(
+    ("speed_m_s", "elevation_rad"),
+    [(0.0, 0.0), (-3.0, 0.0), (math.nan, 0.0), (math.inf, 0.0), (1e9, 0.0), (8.0, math.nan), (8.0, math.inf)],
+)
+def test_implausible_kick_is_refused_at_once(
+    kicker: Bench, speed_m_s: float, elevation_rad: float, sensor: dict[str, bool]
+) -> None:
+    kicker.kick.put(speed_m_s=speed_m_s, elevation_rad=elevation_rad)
     drive = act(kicker, sensor)
     assert (drive.kick_id, drive.kick_m_s) == (0, 0.0)
     assert answers(kicker) == [(1, answer_t.REJECTED)]

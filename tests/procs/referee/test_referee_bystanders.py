@@ -1,4 +1,4 @@
-"""Balls that no robot of the game has played: robots sent off, none at all, and rivals who wait for a free ball."""
+"""Robots that do not play the ball: those sent off, and rivals that wait until the ball is free."""
 
 import pytest
 
@@ -31,7 +31,7 @@ def test_robot_with_a_red_card_scores_no_goal() -> None:
     sight = Sight(script.ball, [Event(Kind.KICK, "cyan3", "", 5.0, 0.0, 8.0)], dict(script.robots))
     assert sight.without(script.whistle.cards.sent_off).touching == {}
     script.goal(11.2, "cyan3")
-    assert script.score == (0, 0), "the last touch of a player was in the own half"
+    assert script.score == (0, 0)
 
 
 def test_robot_with_a_red_card_takes_no_set_piece() -> None:
@@ -55,16 +55,21 @@ def test_what_a_robot_sent_off_does_is_nobodys_deed() -> None:
 
 
 @pytest.mark.parametrize("state", [State.KICK_OFF, State.CORNER_KICK, State.FREE_KICK])
-def test_ball_that_nobody_touched_scores_no_goal(state: State) -> None:
+def test_goal_off_a_robot_sent_off_does_not_count(state: State) -> None:
     script = set_piece(state, CYAN)
-    script.goal(11.2, "")
+    script.whistle.card("cyan3", Card.RED)
+    script.touch("cyan3", Kind.KICK)
+    script.goal(11.2, "cyan3")
     assert (script.score, script.state) == ((0, 0), (State.DROP_BALL, Team.NONE, True))
 
 
-def test_deciding_penalty_that_nobody_touched_is_no_goal() -> None:
+def test_deciding_penalty_of_a_robot_sent_off_is_a_miss() -> None:
     script = Script(penalties=1)
     script.whistle.begin_half(halves.PENALTIES)
-    script.started().goal(11.2, "")
+    script.started()
+    script.whistle.card("cyan3", Card.RED)
+    script.touch("cyan3", Kind.KICK)
+    script.goal(11.2, "cyan3")
     assert script.score == (0, 0)
 
 
