@@ -1,5 +1,6 @@
 """The public bus knows whether a program can hear it."""
 
+import socket
 from collections.abc import Iterator
 
 import pytest
@@ -31,3 +32,11 @@ def test_a_program_that_sends_is_a_listener_at_once(bus: PublicBus, ports: PortB
         pause(0.01)
     assert bus.busy_listeners() is not None
     other.close()
+
+
+def test_a_socket_of_ipv6_can_listen_too(bus: PublicBus, ports: PortBlock) -> None:
+    port = int(ports.public_url.partition("?")[0].rpartition(":")[2])
+    with socket.socket(socket.AF_INET6, socket.SOCK_DGRAM) as java:
+        java.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        java.bind(("::", port))
+        assert bus.busy_listeners() is not None
