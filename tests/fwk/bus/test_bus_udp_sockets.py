@@ -78,7 +78,7 @@ def test_a_free_port_has_no_sockets(bound: socket.socket) -> None:
 
 def test_both_ways_find_the_same(bound: socket.socket) -> None:
     port = bound.getsockname()[1]
-    assert list(udp_sockets._asked_for(port)) == list(udp_sockets._in_table(port))
+    assert list(udp_sockets._asked_for(port, socket.AF_INET)) == list(udp_sockets._in_table(port))
 
 
 def test_the_owner_of_a_socket_is_this_process(bound: socket.socket) -> None:
