@@ -96,17 +96,17 @@ class PacedPublisher:
     def send_due(self) -> None:
         """Sends the next group if its time has come; drops all datagrams if no program can listen."""
         now_us = self._now_us()
-        if self.unheard:
-            self.unheard = self._busy_listeners() is None
-        if not self._queue or now_us < self._due_us:
+        is_due = bool(self._queue) and now_us >= self._due_us
+        if not (is_due or self.unheard):
             return
-        excess = self._size - QUEUE_MAX
         busy = self._busy_listeners()
         self.unheard = busy is None
         if busy is None:
             self._queue.clear()
             self._size = 0
+        if busy is None or not is_due:
             return
+        excess = self._size - QUEUE_MAX
         self._busy_us = {name: self._busy_us.get(name, now_us) for name in busy}
         self._due_us = now_us + SLOT_US
         overdue = [name for name, since_us in self._busy_us.items() if now_us >= since_us + self._patience_us]

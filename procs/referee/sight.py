@@ -30,8 +30,11 @@ class Sight(NamedTuple):
     """A robot that takes no part in the game has touched the ball in this tick."""
 
     def without(self, robots: frozenset[str]) -> "Sight":
-        """Returns the sight without robots that take no part in the game: what they do to the ball, nobody does."""
-        if robots.isdisjoint(self.robots) and robots.isdisjoint(event.robot for event in self.events):
+        """Returns the sight without robots that take no part in the game, and without their events.
+
+        A ball that leaves the field off one of them has left it off no robot.
+        """
+        if not robots:
             return self
         return self._replace(
             robots={name: place for name, place in self.robots.items() if name not in robots},

@@ -9,7 +9,7 @@ from fwk import Clock, Component, Config, Reads, Writes
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
 from procs.model.covariance import is_covariance
-from procs.model.geometry import plausible
+from procs.model.nearest import nearest
 from procs.model.robot import ROBOT, RobotModel
 from procs.model.units import US_PER_S
 
@@ -89,7 +89,7 @@ def joined(around: list[obstacle_t], ahead: list[obstacle_t], same_m: float) -> 
     Weights are the inverse covariances. The nearest two are joined first. Obstacles without a place are left out, and
     those of a detector beyond its 100 that are nearest to the robot.
     """
-    ours, theirs = _nearest(around), _nearest(ahead)
+    ours, theirs = nearest(around, _MOST), nearest(ahead, _MOST)
     distances = sorted(
         (math.dist((one.x_m, one.y_m), (other.x_m, other.y_m)), i, j)
         for i, one in enumerate(ours)
@@ -101,13 +101,6 @@ def joined(around: list[obstacle_t], ahead: list[obstacle_t], same_m: float) -> 
             partners[i] = j
     made = [_mean(one, theirs[partners[i]]) if i in partners else one for i, one in enumerate(ours)]
     return [*made, *(other for j, other in enumerate(theirs) if j not in partners.values())]
-
-
-def _nearest(found: list[obstacle_t]) -> list[obstacle_t]:
-    """Returns the obstacles that count, in their order."""
-    placed = [each for each in found if plausible(each.x_m, each.y_m)]
-    nearest = sorted(range(len(placed)), key=lambda index: math.hypot(placed[index].x_m, placed[index].y_m))[:_MOST]
-    return [placed[index] for index in sorted(nearest)]
 
 
 def _mean(one: obstacle_t, other: obstacle_t) -> obstacle_t:

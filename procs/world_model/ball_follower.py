@@ -18,7 +18,7 @@ from procs.world_model.own_sights import OwnSights
 from procs.world_model.own_view import OwnView
 from procs.world_model.placed_ball import PlacedBall
 from procs.world_model.seen import Seen
-from procs.world_model.settings import STALE_S, WorldModelConfig
+from procs.world_model.settings import STALE_S, WorldModelConfig, counts
 from procs.world_model.team import Mate
 from procs.world_model.told import ball_of, held_by
 from procs.world_model.walls import Walls
@@ -139,12 +139,14 @@ class BallFollower:
             kicked_just_now = 0.0 <= (message.header.time_us - message.kick_us) / US_PER_S < news.iteration_s
             if mate.holds_ball and mate.localized and told_s <= STALE_S and not kicked_just_now:
                 state, covariance = held_by(mate, self._mouth_m)
-                if not self._own_sights.contradict((state[0], state[1]), message.header.time_us, news.now_us):
+                if self._own_sights.contradict((state[0], state[1]), message.header.time_us, news.now_us):
+                    mate.holds_ball = False  # its light barrier is dirty
+                else:
                     self.tracker.hold(mate.name, state, covariance, told_s)
 
     def _sightings(self, robot: str, seen: Seen, height_m: float, observer_m: Floats, age_s: float) -> list[Sighting]:
         """Returns a sighting of the ball (0 or 1), unless it is too old, from the future or impossible."""
-        if not (0.0 <= age_s <= STALE_S and plausible(height_m)):
+        if not (counts(age_s) and plausible(height_m)):
             return []
         own = robot == self._robot
         return [

@@ -31,9 +31,11 @@ from procs.world_model.flight import Flight
 from procs.world_model.seen import Seen
 from procs.world_model.walls import Walls
 
+FASTEST_M_S = 13.0
+"""Speed that no kick exceeds."""
 _SECOND_SIGHT_US = 300_000
 _LOST_US = 250_000  # a ball that no robot has seen for so long may have met something
-_FASTEST_M_S, _USUAL_M_S = 13.0, 11.0  # speeds of a ball that was kicked hard
+_USUAL_M_S = 11.0  # of a ball that was kicked hard
 _LATE_S = 0.03  # time by which a track lies behind a ball that was kicked
 _OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
 _AT_ONCE_US = 20_000  # robots that saw a ball within that time saw it at one place
@@ -261,7 +263,7 @@ class BallTrack:
         for exposed_us, other in reversed(self.doubts):
             between_s = (self.time_us - exposed_us) / US_PER_S
             spread_m = 3 * np.sqrt(np.trace(sighting.covariance_m2 + other.covariance_m2))
-            near = np.hypot(*(sighting.position_m - other.position_m)) <= _FASTEST_M_S * between_s + spread_m
+            near = np.hypot(*(sighting.position_m - other.position_m)) <= FASTEST_M_S * between_s + spread_m
             if near and (other.robot != sighting.robot or not self._contradicted(sighting.robot, exposed_us)):
                 self._begin(other, self._velocity_to(other, exposed_us))
                 self._advance(between_s, Step(rolling_m_s2=self.ball.rolling_m_s2))
@@ -298,7 +300,7 @@ class BallTrack:
         passed_s = (exposed_us - self.seen_us) / US_PER_S
         way_m = np.asarray(sighting.position_m - self.seen_m)
         length_m = float(np.hypot(*way_m))
-        if length_m > _FASTEST_M_S * (passed_s + _LATE_S) + 3 * np.sqrt(np.trace(sighting.covariance_m2)):
+        if length_m > FASTEST_M_S * (passed_s + _LATE_S) + 3 * np.sqrt(np.trace(sighting.covariance_m2)):
             return None
         return way_m / max(passed_s, _LATE_S, length_m / _USUAL_M_S)
 

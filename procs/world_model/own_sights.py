@@ -5,12 +5,11 @@ from collections import deque
 from collections.abc import Sequence
 
 from procs.model.units import US_PER_S
-from procs.world_model.ball_track import Sighting
+from procs.world_model.ball_track import FASTEST_M_S, Sighting
 
 _FRAMES = 2  # a single one may show another thing
 _AGE_US = 300_000  # older frames tell nothing
-_ELSEWHERE_M = 1.0  # the places of two robots err by less ...
-_FASTEST_M_S = 13.0  # ... and a ball is no faster
+_ELSEWHERE_M = 1.0  # the places of two robots err by less
 
 
 class OwnSights:
@@ -36,5 +35,5 @@ class OwnSights:
 
     @staticmethod
     def _is_far(place_m: tuple[float, float], seen_m: Sequence[tuple[float, float]], between_us: int) -> bool:
-        reach_m = _ELSEWHERE_M + _FASTEST_M_S * abs(between_us) / US_PER_S
+        reach_m = _ELSEWHERE_M + FASTEST_M_S * abs(between_us) / US_PER_S
         return all(math.dist(place_m, each) > reach_m for each in seen_m)

@@ -11,6 +11,7 @@ from lcmtypes.soccer import ball_candidate_t, ball_percept_t, obstacle_percepts_
 from procs.model.covariance import is_covariance
 from procs.model.frames import Floats, rotation, to_world
 from procs.model.geometry import plausible, wrap_rad
+from procs.model.nearest import nearest
 from procs.world_model.seen import MOST_OBSTACLES, Seen
 from procs.world_model.team import Mate, PlaceRow
 
@@ -120,7 +121,7 @@ class OwnView:
         if not (seen and self.localized):
             return Seen.NOTHING
         if len(seen) > MOST_OBSTACLES:
-            seen = sorted(seen, key=lambda one: one.x_m * one.x_m + one.y_m * one.y_m)[:MOST_OBSTACLES]
+            seen = nearest(seen, MOST_OBSTACLES)
         places_m = [(one.x_m, one.y_m) for one in seen]
         found = Seen.of(places_m, [one.covariance_m2 for one in seen], [one.radius_m for one in seen])
         return self._from_here(found, age_s)

@@ -9,7 +9,6 @@ from procs.world_model.team import Mate
 OPPONENT = "?"
 """Holder of a ball at an opponent, whose name no robot of the team knows."""
 _TOLD_S = 0.3  # a mate's word that it holds the ball is believed for so long
-_ELSEWHERE_M = 2.0  # a mate further from the ball errs, its light barrier is dirty
 _NEAR_M = 0.9  # an opponent further from the ball does not have it, however uncertain the ball's place is
 _LOW_M = 0.3  # a ball that is higher above the carpet flies over an opponent's mouth
 
@@ -29,12 +28,10 @@ def holder_of(
     """
     if holds:
         return robot
-    ball = model.ball
     for mate in mates:
         if mate.holds_ball and now_s - mate.told_s <= _TOLD_S:
-            away_m = math.dist(mate.position_m.tolist(), (ball.x_m, ball.y_m)) if ball.known else 0.0
-            if away_m <= _ELSEWHERE_M:
-                return mate.name
+            return mate.name
+    ball = model.ball
     if ball.known and ball.z_m < _LOW_M and model.opponents:
         nearest_m = min(math.hypot(one.x_m - ball.x_m, one.y_m - ball.y_m) for one in model.opponents)
         near_m = mouth_m + 2 * math.sqrt(ball.covariance[0][0] + ball.covariance[1][1])

@@ -13,6 +13,11 @@ STALE_S = 0.5
 """Older sightings of mates are not used, and older words of the own kicker."""
 
 
+def counts(age_s: float) -> bool:
+    """Returns whether a sighting counts that was exposed `age_s` ago: not one too old, nor one still to come."""
+    return 0.0 <= age_s <= STALE_S
+
+
 class WorldModelConfig(Config):
     """Settings of the world model."""
 

@@ -30,7 +30,7 @@ from procs.world_model.own_view import OwnView
 from procs.world_model.possession import holder_of
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
-from procs.world_model.settings import STALE_S, WorldModelConfig
+from procs.world_model.settings import STALE_S, WorldModelConfig, counts
 from procs.world_model.team import Mate, PlaceRow, Places, Team
 from procs.world_model.told import mate_of, obstacles_of
 from procs.world_model.world_messages import fill_ball, fill_kick, fill_plan, fill_team_message, fill_world_model
@@ -179,7 +179,7 @@ class WorldModel(Component):
             tracks.predict(passed_s, config.opponent_timeout_s)
         percepts = self.obstacle_percepts.value
         age_s = config.age_s(percepts.capture_us, self.clock.now_us)
-        if self.obstacle_percepts.refreshed and 0.0 <= age_s <= STALE_S:
+        if self.obstacle_percepts.refreshed and counts(age_s):
             self._frames.note(percepts.capture_us or self.clock.now_us)
             next_s = self._frames.next_s
             known, own = team.first(mates), self._own_team
@@ -193,7 +193,7 @@ class WorldModel(Component):
             self._opponents.see(seen.positions_m, seen.covariances_m2, age_s, next_s)
         for message, _ in told:
             age_s = config.age_s(message.obstacles_capture_us or message.header.time_us, self.clock.now_us)
-            if 0.0 <= age_s <= STALE_S:
+            if counts(age_s):
                 seen = obstacles_of(message).widened(config.team_correlation, 1.0)
                 seen = strangers(seen, team, now_s - age_s, rules)
                 self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
