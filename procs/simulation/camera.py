@@ -123,8 +123,7 @@ class Camera(Component):
         self._noise = SensorNoise(
             config.mirror.size_px, errors.noise_levels, config.brightness, errors.flicker, self._noise_seed
         )
-        self._noise.spoil_lens(errors.blur_px, errors.vignette)
-        self._noise.cast = 1.0 + errors.cast * self._casts
+        self._noise.spoil_lens(errors.blur_px, errors.vignette, 1.0 + errors.cast * self._casts)
 
     def _scene(self, seen: Exposure) -> Scene:
         # A robot that is not a player has no marker: a black one on a black body.

@@ -41,7 +41,19 @@ class CameraErrors(BaseModel):
 PRESETS: dict[Realism, CameraErrors] = {
     "none": CameraErrors(),
     "friendly": CameraErrors(latency_s=0.02, shake_px=0.1, shake_px_per_m_s=0.15, noise_levels=3.0),
-    "realistic": CameraErrors(latency_s=0.035, shake_px=0.2, shake_px_per_m_s=0.3, noise_levels=5.0),
+    "realistic": CameraErrors(
+        latency_s=0.035,
+        shake_px=0.2,
+        shake_px_per_m_s=0.3,
+        noise_levels=5.0,
+        flicker=0.02,
+        vignette=0.075,
+        cast=0.025,
+        worn=0.075,
+        clutter_1_m2=0.15,
+        gaps_1_min=1.0,
+        gap_s=0.15,
+    ),
     "harsh": CameraErrors(
         latency_s=0.07,
         shake_px=0.4,

@@ -85,8 +85,11 @@ PRESETS: dict[Realism, PerceptErrors] = {
         team_missed=0.03,
         line_missed=0.1,
         ball_phantoms_1_s=0.005,
+        mouth_phantoms_1_s=0.05,
         robot_phantoms_1_s=0.05,
         line_phantoms=0.02,
+        gaps_1_min=1.0,
+        gap_s=0.15,
     ),
     "harsh": PerceptErrors(
         latency_s=0.07,

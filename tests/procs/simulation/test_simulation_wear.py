@@ -1,5 +1,6 @@
 """Signs of use and faults of a camera: worn lines, specks, a cast, a tilt, bursts of lost frames."""
 
+from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
@@ -10,6 +11,8 @@ from fwk import Component
 from fwk.testing import Bench
 from lcmtypes.soccer import ground_truth_t, true_robot_t
 from procs.model.field import Field
+from procs.model.realism import Realism
+from procs.simulation import camera_errors, percept_errors
 from procs.simulation.camera import Camera
 from procs.simulation.gaps import Gaps
 from procs.simulation.percepts import Percepts
@@ -46,7 +49,7 @@ def test_specks_lie_on_the_floor_alone() -> None:
 
 def test_cast_changes_each_colour_by_its_factor() -> None:
     noise = SensorNoise(100, 0.0, 1.0, 0.0, seed=1)
-    noise.cast = np.array((1.2, 1.0, 0.8))
+    noise.spoil_lens(0.0, 0.0, np.array((1.2, 1.0, 0.8)))
     seen = noise.apply(np.full((100, 100, 3), 100, np.uint8), np.random.default_rng(1))
     assert seen[50, 50].tolist() == [120, 100, 80]
 
@@ -92,9 +95,25 @@ def test_tilt_and_cast_change_the_picture() -> None:
     tilted = Bench(Camera, name="cyan1/camera", realism="none", tilt_sd_deg=1.0, cast=0.1).component
     assert isinstance(bare, Camera)
     assert isinstance(tilted, Camera)
-    assert (bare._renderer._mirror.roll_rad, bare._noise.cast.tolist()) == (0.0, [1.0, 1.0, 1.0])
+    grey, rng = np.full((430, 430, 3), 100, np.uint8), np.random.default_rng(1)
+    assert (bare._renderer._mirror.roll_rad, bare._noise.apply(grey, rng).tolist()) == (0.0, grey.tolist())
     assert 0.0 < abs(tilted._renderer._mirror.roll_rad) < 0.1
-    assert 0.0 < np.abs(tilted._noise.cast - 1.0).max() < 0.5
+    assert 5 < np.ptp(tilted._noise.apply(grey, rng)[0, 0].astype(int)) < 50
+
+
+def test_vignette_darkens_the_edge_beside_a_cast() -> None:
+    noise = SensorNoise(100, 0.0, 1.0, 0.0, seed=1)
+    noise.spoil_lens(0.0, 0.2, np.array((1.1, 1.0, 0.9)))
+    seen = noise.apply(np.full((100, 100, 3), 100, np.uint8), np.random.default_rng(1))
+    assert seen[50, 50].tolist() == [110, 100, 90]
+    assert seen[0, 0].tolist() == [88, 80, 72]
+
+
+@pytest.mark.parametrize("errors", [camera_errors.PRESETS, percept_errors.PRESETS])
+def test_realistic_errors_come_in_bursts(errors: Mapping[Realism, Any]) -> None:
+    harsh, realistic = errors["harsh"], errors["realistic"]
+    assert 0 < realistic.gaps_1_min < harsh.gaps_1_min
+    assert 0 < realistic.gap_s < harsh.gap_s
 
 
 def test_phantoms_lie_in_the_own_mouth() -> None:
