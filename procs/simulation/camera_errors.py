@@ -49,6 +49,7 @@ PRESETS: dict[Realism, CameraErrors] = {
         flicker=0.02,
         vignette=0.075,
         cast=0.025,
+        tilt_sd_deg=0.05,
         worn=0.075,
         clutter_1_m2=0.15,
         gaps_1_min=1.0,

@@ -88,6 +88,7 @@ PRESETS: dict[Realism, PerceptErrors] = {
         mouth_phantoms_1_s=0.05,
         robot_phantoms_1_s=0.05,
         line_phantoms=0.02,
+        tilt_sd_deg=0.05,
         gaps_1_min=1.0,
         gap_s=0.15,
     ),

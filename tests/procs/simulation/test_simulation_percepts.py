@@ -110,7 +110,7 @@ def seen_through(rendered: bool, scene: type[Component], **settings: Any) -> Mem
     owner = "camera" if rendered else "percepts"
     return MemorySystem(
         parts,
-        settings={f"cyan1/{owner}": {"latency_s": 0.0, "gaps_1_min": 0.0}, "world/scene": settings},
+        settings={f"cyan1/{owner}": {"latency_s": 0.0, "gaps_1_min": 0.0, "tilt_sd_deg": 0.0}, "world/scene": settings},
         channels={"world/scene": {"ground_truth": "world/ground_truth"}},
     )
 
