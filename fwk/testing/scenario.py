@@ -4,9 +4,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
-from pydantic import AllowInfNan, BaseModel, ConfigDict, PositiveFloat, Strict
+from pydantic import AllowInfNan, BaseModel, ConfigDict, Field, Strict
 
 from fwk.testing.expression import Expression, Words
+
+_LONGEST_S = 86_400.0
 
 
 class Expectations(BaseModel):
@@ -22,7 +24,7 @@ class Expectations(BaseModel):
     """Each must hold in every tick."""
     at_end: list[str] = []
     """Each must hold in the last tick."""
-    time_s: Annotated[PositiveFloat, AllowInfNan(False), Strict()] = 10.0
+    time_s: Annotated[float, Field(gt=0.0, le=_LONGEST_S), AllowInfNan(False), Strict()] = 10.0
     """Limit of the logical time. Without `always` and `at_end` a scenario ends once all the rest has happened."""
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Literal, Protocol
 
-from pydantic import BaseModel, ConfigDict, Field, PositiveInt
+from pydantic import BaseModel, ConfigDict, Field
 
 from procs.model.ball import BallModel
 
@@ -69,7 +69,7 @@ class Player(BaseModel):
 
     team: Literal["cyan", "magenta"]
     """Cyan defends the goal at negative x."""
-    number: PositiveInt
+    number: int = Field(ge=1, le=2**31 - 1)
     """Number on the robot's back; no two players of a team have the same."""
 
 

@@ -7,7 +7,8 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from fwk.testing import ExpressionError, Verdict
-from procs.scenarios.scenario import BOOK, ScenarioError, outcome, read
+from procs.scenarios.file import BOOK, ScenarioError
+from procs.scenarios.scenario import outcome, read
 
 
 def main() -> int:

@@ -1,39 +1,26 @@
 """Field crew of a scenario: sets robots and ball down, and gives the referee commands, each at its time."""
 
-from typing import Annotated, Any, Self
+from typing import TYPE_CHECKING, Any
 
-from pydantic import AllowInfNan, BaseModel, ConfigDict, Field, NonNegativeFloat, model_validator
+from pydantic import Field, NonNegativeFloat
 
-from fwk import Call, Calls, Clock, Component, Config, Logger, channel
-from lcmtypes.soccer import place_ball_t, place_robot_t, referee_command_t
-from procs.scenarios.mistakes import field_mistakes
+from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Request, Serves, channel
+from lcmtypes.soccer import (
+    freeze_world_t,
+    ground_truth_t,
+    hold_robot_t,
+    place_ball_t,
+    place_robot_t,
+    play_scenario_t,
+    referee_command_t,
+    reset_world_t,
+)
+from procs.model.field import Field as SoccerField
+from procs.model.units import US_PER_S
+from procs.scenarios.action import Action
 
-_MESSAGES = {"place_ball": place_ball_t, "place_robot": place_robot_t, "referee": referee_command_t}
-
-
-class Action(BaseModel):
-    """Action of the crew; exactly one of the three is given."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    at_s: Annotated[NonNegativeFloat, AllowInfNan(False)] = 0.0
-    """Logical time, from the beginning of the run."""
-    place_ball: dict[str, float] | None = None
-    """Fields of `place_ball_t`: `x_m`, `y_m`, `vx_m_s` and so on."""
-    place_robot: dict[str, Any] | None = None
-    """Fields of `place_robot_t`: `robot`, `x_m`, `y_m`, `heading_rad`."""
-    referee: dict[str, str] | None = None
-    """Fields of `referee_command_t`: `name`, `team`, `robot`."""
-
-    @model_validator(mode="after")
-    def _makes_sense(self) -> Self:
-        given = [name for name in _MESSAGES if getattr(self, name) is not None]
-        if len(given) != 1:
-            raise ValueError(f"give one of {', '.join(_MESSAGES)}; here are {', '.join(given) or 'none'}")
-        wrong = field_mistakes(getattr(self, given[0]), _MESSAGES[given[0]]())
-        if wrong:
-            raise ValueError(f"{given[0]}: {'; '.join(wrong)}")
-        return self
+if TYPE_CHECKING:
+    from procs.scenarios.file import Scenario
 
 
 class CrewConfig(Config):
@@ -41,23 +28,38 @@ class CrewConfig(Config):
 
     actions: list[Action] = Field([], frozen=True)
     """Actions in any order."""
+    field: SoccerField = Field(SoccerField(), frozen=True)
+    """Measures of the field."""
+    settle_s: NonNegativeFloat = 1.0
+    """How long the world stands still at the start of a scenario, so that robots find their new places."""
 
 
 class Crew(Component):
-    """Carries out its actions in the order of their times."""
+    """Carries out its actions in the order of their times, and plays scenarios in a running match.
+
+    `fwk call world/scenario name=pass-reaches-the-mate`
+    """
 
     stage = "sensor_acquire"
 
     config: CrewConfig
     clock: Clock
     log: Logger
+    ground_truth: Reads[ground_truth_t] = channel("world/ground_truth")
+    scenario: Serves[play_scenario_t]
     place_ball: Calls[place_ball_t] = channel("world/place_ball")
     place_robot: Calls[place_robot_t] = channel("world/place_robot")
+    hold_robot: Calls[hold_robot_t] = channel("world/hold_robot")
+    freeze: Calls[freeze_world_t] = channel("world/freeze")
+    reset: Calls[reset_world_t] = channel("world/reset")
     referee: Calls[referee_command_t] = channel("world/referee_command")
 
     def init(self) -> None:
         self._left = sorted(self.config.actions, key=lambda action: action.at_s)
         self._asked: list[tuple[Action, Call]] = []
+        self._begun_us = 0  # time 0 of the actions
+        self._ends_s: float | None = None  # after that; None: no scenario is played
+        self._start: tuple[Request[play_scenario_t], Scenario, int] | None = None  # under way, since that time
         self.refused: list[str] = []
         """Actions that the simulator or the referee did not carry out, and why."""
 
@@ -68,8 +70,58 @@ class Crew(Component):
         return late + ([f"without an answer: {len(self._asked)} commands"] if self._asked else [])
 
     def loop(self) -> None:
-        while self._left and self._left[0].at_s * 1e6 <= self.clock.now_us:
+        if self.ground_truth.has_value:
+            for request in self.scenario:
+                self._prepare(request)
+        self._hear()
+        if self._start and not self._asked and self.clock.since_s(self._start[2]) >= self.config.settle_s:
+            self._begin(*self._start[:2])
+        passed_us = self.clock.now_us - self._begun_us
+        while self._left and self._left[0].at_s * US_PER_S <= passed_us:
             self._do(self._left.pop(0))
+        if self._ends_s is not None and passed_us >= self._ends_s * US_PER_S:
+            self._ends_s = None
+            self.log.info("the scenario is over; the match goes on")
+
+    def _prepare(self, request: Request[play_scenario_t]) -> None:
+        """Has robots and ball put to their places, instead of what the crew was at."""
+        from procs.scenarios.file import ScenarioError  # imports what a match without scenarios does not need
+        from procs.scenarios.start import found, start_of
+
+        robots = [robot.name for robot in self.ground_truth.value.robots]
+        try:
+            scenario = found(request.value.name, request.value.text)
+        except ScenarioError as error:
+            request.reject("; ".join(str(error).splitlines()))
+            return
+        strangers = [robot for robot in scenario.everyone if robot not in robots]
+        if strangers:
+            request.reject(f"no robot '{strangers[0]}' in this match; there are: {', '.join(robots)}")
+            return
+        if self._start:
+            self._start[0].fail("another scenario was asked for before this one began")
+        request.accept()
+        self._start, self._ends_s = (request, scenario, self.clock.now_us), None
+        self._left, self._asked, self.refused = [], [], []
+        for action in start_of(scenario, robots, self.config.field):
+            self._do(action)
+
+    def _begin(self, request: Request[play_scenario_t], scenario: "Scenario") -> None:
+        """Lets the world move and begins with the actions of the scenario."""
+        from procs.scenarios.start import left_out, play_of
+
+        self._start = None
+        if self.refused:
+            self._do(Action(freeze={"frozen": False}))
+            request.fail("; ".join(self.refused))
+            return
+        request.done()
+        self._begun_us, self._left, self._ends_s = self.clock.now_us, play_of(scenario), scenario.time_s
+        self.log.info(f"the scenario {request.value.name or 'given as text'} begins; it takes {scenario.time_s:g} s")
+        if kept := left_out(scenario):
+            self.log.warning(f"the match keeps its own settings; the scenario states others: {', '.join(kept)}")
+
+    def _hear(self) -> None:
         for action, call in [each for each in self._asked if each[1].finished]:
             self._asked.remove((action, call))
             if not call.done:
@@ -77,13 +129,6 @@ class Crew(Component):
                 self.log.error(self.refused[-1])
 
     def _do(self, action: Action) -> None:
-        for port, fields in (
-            (self.place_ball, action.place_ball),
-            (self.place_robot, action.place_robot),
-            (self.referee, action.referee),
-        ):
-            if fields is not None:
-                port.value = type(port.value)()  # what an action does not name is not that of the one before
-                for name, value in fields.items():
-                    setattr(port.value, name, value)
-                self._asked.append((action, port.call()))
+        port: Calls[Any] = getattr(self, action.kind)
+        port.value = action.message
+        self._asked.append((action, port.call()))

@@ -6,7 +6,8 @@ from pathlib import Path
 from fwk.testing.executors import INSTALL
 from procs.evaluation.plots import plot
 from procs.evaluation.table import Row, as_csv, as_json, as_text, wilson
-from procs.scenarios.scenario import BOOK, outcome, read
+from procs.scenarios.file import BOOK
+from procs.scenarios.scenario import outcome, read
 
 INPUTS = sorted(BOOK.glob("*.yaml"))
 """Files on which results depend besides modules."""

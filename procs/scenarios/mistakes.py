@@ -1,6 +1,5 @@
 """Mistakes in scenario files, in words that say where they are and what would be right."""
 
-import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
@@ -9,11 +8,19 @@ from typing import Any
 import yaml
 from pydantic import BaseModel, ValidationError
 
-from procs.model.field import Point
-from procs.model.robot import TEAM_NUMBERS, team_of
-from procs.referee.orders import COMMANDS, TEAMS
+from lcmtypes.soccer import place_ball_t, referee_command_t
+from procs.model.field import Field, Point
+from procs.model.robot import PLAYERS, player_of
+from procs.referee.orders import CARDS, COMMANDS, GOALS, TEAMS
+from procs.referee.reasons import REPAIRS
+from procs.referee.refusals import SET_PIECES
+from procs.scenarios.action import Action, field_mistakes
+from procs.simulation.field_crew import ball_mistake, robot_mistake
 from procs.simulation.physics.room import Room
 from procs.simulation.simulator import SimulatorConfig
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+_LARGE_NUMBER = re.compile(r".*?0*[1-9]\d{9,}")
 
 
 class UniqueKeys(yaml.SafeLoader):
@@ -44,9 +51,6 @@ class UniqueKeys(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
-
-
 def texts_of(error: ValidationError, where: str = "", known: Sequence[str] = ()) -> list[str]:
     """Returns one text for each mistake that pydantic found; `known` are the keys of the outermost level."""
     found = []
@@ -59,29 +63,14 @@ def texts_of(error: ValidationError, where: str = "", known: Sequence[str] = ())
     return found
 
 
-def field_mistakes(fields: Mapping[str, Any], message: Any) -> list[str]:
-    """Returns what is wrong with fields that are given for a message: unknown names, and values of another type."""
-    known = [name for name in message.__slots__ if name not in ("header", "command")]
-    found = []
-    for name, value in fields.items():
-        if name not in known:
-            found.append(f"there is no '{name}'; there are {', '.join(known)}")
-            continue
-        wanted = type(getattr(message, name))
-        fits = isinstance(value, (int, float)) if wanted is float else isinstance(value, wanted)
-        if not fits or (isinstance(value, bool) and wanted is not bool):
-            found.append(f"{name} is {value!r}; it should be a {'number' if wanted is float else wanted.__name__}")
-        elif wanted is float and not math.isfinite(value):
-            found.append(f"{name} is {value!r}; it should be a finite number")
-    return found
-
-
 def robot_mistakes(robots: Sequence[str], dummies: Sequence[str], places: Mapping[str, Any]) -> Iterator[str]:
     """Yields what is wrong with the names of robots."""
     everyone = [*robots, *dummies]
     for name in dict.fromkeys(everyone):
         if not _NAME.fullmatch(name):
             yield f"robots: '{name}' is not a name; use letters, digits, '_' and '-', such as cyan1"
+        if _LARGE_NUMBER.fullmatch(name):
+            yield f"robots: '{name}' has a number that is too large; use one of nine digits at most, such as cyan1"
         if everyone.count(name) > 1:
             yield f"robots: '{name}' is named {everyone.count(name)} times"
     for name in places:
@@ -91,27 +80,65 @@ def robot_mistakes(robots: Sequence[str], dummies: Sequence[str], places: Mappin
 
 def team_mistakes(robots: Sequence[str], settings: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
     """Yields the robots that play for no team: neither their names nor the settings `players` say for which."""
-    named = {name for values in settings.values() for name in values.get("players") or ()}
+    stated = [players for values in settings.values() if isinstance(players := values.get("players"), Mapping)]
     for name in robots:
-        if team_of(name) not in TEAM_NUMBERS and name not in named:
+        if not (_LARGE_NUMBER.fullmatch(name) or player_of(name, PLAYERS) or any(name in each for each in stated)):
             yield f"robots: '{name}' plays for no team; names such as cyan1 and magenta2 tell it, or settings 'players'"
 
 
-def command_mistakes(commands: Sequence[Any], everyone: Sequence[str], time_s: float) -> Iterator[str]:
-    """Yields the actions that come too late, and those with a robot or a command of the referee that does not exist."""
+def ball_mistakes(fields: Mapping[str, Any], field: Field) -> Iterator[str]:
+    """Yields why the ball of a scenario cannot be put to its place."""
+    wrong = field_mistakes(fields, place_ball_t()) or [ball_mistake(place_ball_t(**fields), field)]
+    yield from (f"ball: {each}" for each in wrong if each)
+
+
+def command_mistakes(
+    commands: Sequence[Action], everyone: Sequence[str], time_s: float, config: SimulatorConfig
+) -> Iterator[str]:
+    """Yields the actions that come too late, and those that simulator or referee would refuse at any time."""
     for place, action in enumerate(commands):
         if action.at_s >= time_s:
             yield f"commands.{place}: at_s is {action.at_s:g}; the scenario ends at {time_s:g} s"
-        name = (action.referee or {}).get("name", "")
-        if action.referee is not None and name not in COMMANDS:
-            yield f"commands.{place}: referee: no command '{name}'; {right_name(name, COMMANDS)}"
-        for kind, fields in (("place_robot", action.place_robot), ("referee", action.referee)):
-            robot = (fields or {}).get("robot", "")
-            if robot not in everyone and (robot or kind == "place_robot") and fields is not None:
-                yield f"commands.{place}: {kind}: no robot '{robot}'; {right_name(robot, everyone)}"
-        team = (action.referee or {}).get("team", "")
-        if team not in TEAMS:
-            yield f"commands.{place}: referee: no team '{team}'; {right_name(team, [each for each in TEAMS if each])}"
+        yield from (f"commands.{place}: {action.kind}: {each}" for each in _refusals(action, everyone, config) if each)
+
+
+def _refusals(action: Action, everyone: Sequence[str], config: SimulatorConfig) -> Iterator[str]:
+    command = action.message
+    robot = command.robot if "robot" in command.__slots__ else ""
+    if action.kind == "referee":
+        yield from _referee_refusals(command, config)
+        if not robot:
+            return
+    if "robot" in command.__slots__ and robot not in everyone:
+        yield f"no robot '{robot}'; {right_name(robot, everyone)}"
+    elif action.kind == "place_robot":
+        yield robot_mistake(command, everyone, config.field)
+    elif action.kind == "place_ball":
+        yield ball_mistake(command, config.field)
+
+
+def _referee_refusals(command: referee_command_t, config: SimulatorConfig) -> Iterator[str]:
+    name, team, robot = command.name, command.team, command.robot
+    if name not in COMMANDS:
+        yield f"no command '{name}'; {right_name(name, COMMANDS)}"
+    elif name in (*SET_PIECES, *GOALS) and not team:
+        yield f"'{name}' needs a team: cyan or magenta"
+    elif name in (*CARDS, *REPAIRS) and not (team or robot):
+        yield f"'{name}' needs a team or a robot"
+    elif name in (*CARDS, *REPAIRS) and team in TEAMS and team and robot:
+        player = player_of(robot, config.players)
+        if player and player.team != team:
+            yield f"{robot} does not play for {team}"
+    if team not in TEAMS:
+        yield f"no team '{team}'; {right_name(team, [each for each in TEAMS if each])}"
+
+
+def simulator_settings(settings: Mapping[str, Mapping[str, Any]]) -> SimulatorConfig:
+    """Returns the settings of the simulator that a scenario states; the usual ones if they have mistakes."""
+    try:
+        return SimulatorConfig.model_validate(settings.get("world/simulator", {}))
+    except ValidationError:
+        return SimulatorConfig()
 
 
 def place_mistakes(places: Mapping[str, Sequence[float]], config: SimulatorConfig) -> Iterator[str]:

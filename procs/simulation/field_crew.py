@@ -1,9 +1,10 @@
 """Carries out what people and programs ask of the world: robots and ball are put down, the world stands still."""
 
 import math
+from collections.abc import Iterable
 
 from fwk import Serves
-from lcmtypes.soccer import freeze_world_t, place_ball_t, place_robot_t, reset_world_t
+from lcmtypes.soccer import freeze_world_t, hold_robot_t, place_ball_t, place_robot_t, reset_world_t
 from procs.model.field import Field
 from procs.simulation.physics.ball_body import THROW_LIMIT_M_S
 from procs.simulation.physics.start_places import Pose
@@ -11,18 +12,20 @@ from procs.simulation.physics.world import World
 
 
 class FieldCrew:
-    """Answers the commands of a tick, in the order: reset, robots, ball, freeze."""
+    """Answers the commands of a tick, in the order: reset, robots, robots to hold, ball, freeze."""
 
     def __init__(self, world: World, field: Field) -> None:
         self.frozen = False
         """True while robots and ball stand still."""
+        self.held: set[str] = set()
+        """Robots whose motors and kicker stand."""
         self._world = world
-        self._x_m = field.half_length_m + field.border_m
-        self._y_m = field.half_width_m + field.border_m
+        self._field = field
 
     def carry_out(
         self,
         place_robot: Serves[place_robot_t],
+        hold_robot: Serves[hold_robot_t],
         place_ball: Serves[place_ball_t],
         freeze: Serves[freeze_world_t],
         reset: Serves[reset_world_t],
@@ -30,12 +33,13 @@ class FieldCrew:
         """Takes all waiting commands."""
         for beginning in reset:
             self._world.return_to_starts()
+            self.held.clear()
             if beginning.value.keep_ball or self._world.place_ball(0.0, 0.0):
                 beginning.done()
             else:
                 beginning.fail(_NO_ROOM_FOR_BALL)
         for robot in place_robot:
-            mistake = self._mistake_in_robot(robot.value)
+            mistake = robot_mistake(robot.value, self._world.robots, self._field)
             if mistake:
                 robot.reject(mistake)
                 continue
@@ -44,8 +48,15 @@ class FieldCrew:
                 robot.done()
             else:
                 robot.reject(f"there is no room left for {wanted.robot} between the walls")
+        for hold in hold_robot:
+            stranger = _stranger(hold.value.robot, self._world.robots)
+            if stranger:
+                hold.reject(stranger)
+                continue
+            (self.held.add if hold.value.held else self.held.discard)(hold.value.robot)
+            hold.done()
         for ball in place_ball:
-            mistake = self._mistake_in_ball(ball.value)
+            mistake = ball_mistake(ball.value, self._field)
             if mistake:
                 ball.reject(mistake)
                 continue
@@ -61,28 +72,40 @@ class FieldCrew:
                 self._world.drop_kicks()
             wish.done()
 
-    def _mistake_in_robot(self, wanted: place_robot_t) -> str:
-        if wanted.robot not in self._world.robots:
-            return f"no robot '{wanted.robot}'; there are: {', '.join(self._world.robots)}"
-        if not math.isfinite(wanted.heading_rad):
-            return f"heading_rad is {wanted.heading_rad}; it should be a number"
-        return self._mistake_in_place(wanted.x_m, wanted.y_m)
 
-    def _mistake_in_ball(self, wanted: place_ball_t) -> str:
-        for name, value, least, most in (
-            ("z_m", wanted.z_m, 0.0, _HIGHEST_M),
-            ("vx_m_s", wanted.vx_m_s, -THROW_LIMIT_M_S, THROW_LIMIT_M_S),
-            ("vy_m_s", wanted.vy_m_s, -THROW_LIMIT_M_S, THROW_LIMIT_M_S),
-            ("vz_m_s", wanted.vz_m_s, -THROW_LIMIT_M_S, THROW_LIMIT_M_S),
-        ):
-            if not least <= value <= most:
-                return f"{name} is {value}; it should be from {least:g} to {most:g}"
-        return self._mistake_in_place(wanted.x_m, wanted.y_m)
+def robot_mistake(wanted: place_robot_t, robots: Iterable[str], field: Field) -> str:
+    """Returns why a robot cannot be set down there, or an empty text."""
+    stranger = _stranger(wanted.robot, robots)
+    if stranger:
+        return stranger
+    if not math.isfinite(wanted.heading_rad):
+        return f"heading_rad is {wanted.heading_rad}; it should be a number"
+    return _place_mistake(wanted.x_m, wanted.y_m, field)
 
-    def _mistake_in_place(self, x_m: float, y_m: float) -> str:
-        if abs(x_m) <= self._x_m and abs(y_m) <= self._y_m:
-            return ""
-        return f"({x_m:g}, {y_m:g}) is outside the walls; x is at most {self._x_m:g} m, y {self._y_m:g} m"
+
+def ball_mistake(wanted: place_ball_t, field: Field) -> str:
+    """Returns why the ball cannot be put down or thrown there, or an empty text."""
+    for name, value, least, most in (
+        ("z_m", wanted.z_m, 0.0, _HIGHEST_M),
+        ("vx_m_s", wanted.vx_m_s, -THROW_LIMIT_M_S, THROW_LIMIT_M_S),
+        ("vy_m_s", wanted.vy_m_s, -THROW_LIMIT_M_S, THROW_LIMIT_M_S),
+        ("vz_m_s", wanted.vz_m_s, -THROW_LIMIT_M_S, THROW_LIMIT_M_S),
+    ):
+        if not least <= value <= most:
+            return f"{name} is {value}; it should be from {least:g} to {most:g}"
+    return _place_mistake(wanted.x_m, wanted.y_m, field)
+
+
+def _stranger(robot: str, robots: Iterable[str]) -> str:
+    known = list(robots)
+    return "" if robot in known else f"no robot '{robot}'; there are: {', '.join(known)}"
+
+
+def _place_mistake(x_m: float, y_m: float, field: Field) -> str:
+    most_x_m, most_y_m = field.half_length_m + field.border_m, field.half_width_m + field.border_m
+    if abs(x_m) <= most_x_m and abs(y_m) <= most_y_m:
+        return ""
+    return f"({x_m:g}, {y_m:g}) is outside the walls; x is at most {most_x_m:g} m, y {most_y_m:g} m"
 
 
 _NO_ROOM_FOR_BALL = "there is no room left for the ball between the walls"

@@ -14,6 +14,7 @@ from lcmtypes.soccer import (
     field_t,
     freeze_world_t,
     ground_truth_t,
+    hold_robot_t,
     match_events_t,
     place_ball_t,
     place_robot_t,
@@ -100,6 +101,7 @@ class Simulator(Component):
     kicker_drive: Each[Reads[kicker_drive_t]] = channel("*/kicker_drive")
     ball_placement: Reads[ball_placement_t] = channel("world/ball_placement")
     place_robot: Serves[place_robot_t]
+    hold_robot: Serves[hold_robot_t]
     place_ball: Serves[place_ball_t]
     freeze: Serves[freeze_world_t]
     reset: Serves[reset_world_t]
@@ -164,7 +166,7 @@ class Simulator(Component):
         self._before_us = now_us
         self.time_source.next_us = now_us + self.clock.period_us
         self._place_ball()
-        self._crew.carry_out(self.place_robot, self.place_ball, self.freeze, self.reset)
+        self._crew.carry_out(self.place_robot, self.hold_robot, self.place_ball, self.freeze, self.reset)
         events: list[Event] = []
         if not self._crew.frozen:
             self._command_robots()
@@ -217,7 +219,7 @@ class Simulator(Component):
     def _command_robots(self) -> None:
         world = self._world
         for robot, reader in self.wheel_command.items():
-            obeys = robot not in self._empty and self._is_fresh(reader)
+            obeys = self._may_move(robot) and self._is_fresh(reader)
             wheels_m_s = self._wanted_m_s(robot, reader) if obeys else _STOPPED
             world.robots[robot].drive.command(wheels_m_s, world.time_us)
         for robot in world.kickers:
@@ -225,13 +227,16 @@ class Simulator(Component):
                 continue
             drives = self.kicker_drive[robot]
             wishes = [_command(drive) for drive in drives.fresh]
-            obeys = robot not in self._empty and self._is_fresh(drives)
+            obeys = self._may_move(robot) and self._is_fresh(drives)
             for wish in wishes if obeys else [KickerCommand(0, 0.0, dribble=False)]:
                 world.kickers[robot].command(wish, world.time_us)
 
     def _wanted_m_s(self, robot: str, reader: Reads[wheel_command_t]) -> Wheels:
         """Returns the rim speeds of a command; one for another number of wheels stops the robot."""
         return self._wheels[robot].read(reader.value.wheel_m_s, reader.header.writer) or _STOPPED
+
+    def _may_move(self, robot: str) -> bool:
+        return robot not in self._empty and robot not in self._crew.held
 
     def _is_fresh(self, reader: Reads[wheel_command_t] | Reads[kicker_drive_t]) -> bool:
         age_s = self.clock.since_s(reader.header.time_us)

@@ -34,7 +34,7 @@ def label(component: type[Component]) -> str:
 
 
 def usage(component: type[Component]) -> tuple[str, ComponentPlan] | None:
-    """Returns the first launch file in which all needs of the component are met, and its index in that plan.
+    """Returns the first launch file that starts the component with all its needs met, and its index in that plan.
 
     A port for many instances needs two of them if any launch file has two. None if no launch file suits.
     """
@@ -50,4 +50,5 @@ def _key(component: type[Component]) -> tuple[str, str]:
 
 @cache
 def _usages() -> list[tuple[str, ComponentPlan]]:
-    return [(file, each) for file in FILES for each in load_plan(str(LAUNCH / file), LaunchOptions()).components]
+    plans = [(file, load_plan(str(LAUNCH / file), LaunchOptions())) for file in FILES]
+    return [(file, each) for file, plan in plans for each in plan.components if each.start]

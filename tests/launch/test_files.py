@@ -57,11 +57,11 @@ def test_a_team_hears_only_itself() -> None:
         assert radio.channels["inboxes"] == tuple(f"{robot}/team_inbox" for robot in own)
 
 
-def test_only_cameras_and_the_referee_read_the_ground_truth() -> None:
+def test_only_cameras_referee_and_crew_read_the_truth() -> None:
     plan = plan_of("soccer.yaml")
     truth = next(channel for channel in plan.channels if channel.name == "world/ground_truth")
     readers = [plan.components[index] for index in truth.readers]
-    assert [each.name for each in readers if each.namespace == "world"] == ["world/referee"]
+    assert [each.name for each in readers if each.namespace == "world"] == ["world/referee", "world/crew"]
     assert {each.name.rpartition("/")[2] for each in readers if each.namespace != "world"} == {"camera"}
 
 

@@ -28,7 +28,8 @@ def call(
         list[str] | None,
         typer.Argument(
             metavar="FIELD=VALUE...",
-            help="fields of the message, the others are zero; member of a struct: field.below=1",
+            help="fields of the message, the others are zero; member of a struct: field.below=1; text of a file: "
+            "field=@FILE",
         ),
     ] = None,
     timeout_s: Annotated[

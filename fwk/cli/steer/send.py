@@ -18,6 +18,7 @@ from fwk.lcm.type_registry import use_types_of
 from fwk.model.errors import Problems, hint
 from fwk.plan.files.source import read_value
 
+_NO_FIELD = "'{}' is not FIELD=VALUE; write for example x_m=1.5, or xs=[1, 2]"
 _NUMBERS = {*INTEGERS, "float", "double"}
 
 
@@ -33,7 +34,8 @@ def send(
         list[str] | None,
         typer.Argument(
             metavar="FIELD=VALUE...",
-            help="fields of the message, the others are zero; member of a struct: field.below=1",
+            help="fields of the message, the others are zero; member of a struct: field.below=1; text of a file: "
+            "field=@FILE",
         ),
     ] = None,
     chosen: RunChoice = None,
@@ -81,10 +83,11 @@ def _why_not(channel: str, row: dict[str, Any] | None, outside: list[str]) -> st
 
 
 def made(type_name: str, fields: list[str]) -> Any:
-    """Returns a message with these fields set.
+    """Returns a message with these fields set; `FIELD=@FILE` is the text of a file.
 
     Raises:
-        MessageError: no such type or field, one that is given twice, or a value that is not YAML.
+        MessageError: no such type or field, one that is given twice, a file that cannot be read, or a value that is
+            not YAML.
     """
     message: Any = messages.type_named(type_name)()
     given: set[str] = set()
@@ -93,14 +96,9 @@ def made(type_name: str, fields: list[str]) -> Any:
         if path in given:
             raise MessageError(f"{path} is given twice")
         given.add(path)
-        problems = Problems()
-        try:
-            refuse_deep_nesting(typed)
-        except ValueError as error:
-            raise MessageError(f"{path}: {error}") from error
-        node = read_value(typed, "", problems)
-        if not equals or problems or node is None:
-            raise MessageError(f"'{text}' is not FIELD=VALUE; write for example x_m=1.5, or xs=[1, 2]")
+        value = _content(path, typed[1:]) if typed.startswith("@") else _value(path, typed, text)
+        if not equals:
+            raise MessageError(_NO_FIELD.format(text))
         *above, last = path.split(".")
         target = message
         for name in above:
@@ -109,8 +107,39 @@ def made(type_name: str, fields: list[str]) -> Any:
         if last not in known:
             raise MessageError(f"{type_name} has no field '{path}'; {hint(last, known)}")
         kind = target.__typenames__[known.index(last)]
-        setattr(target, last, _fitting(node.plain(), kind, path))
+        setattr(target, last, _fitting(value, kind, path))
     return message
+
+
+def _value(path: str, typed: str, text: str) -> Any:
+    """Returns the value of an argument `FIELD=VALUE`, which is YAML.
+
+    Raises:
+        MessageError: it is not.
+    """
+    problems = Problems()
+    try:
+        refuse_deep_nesting(typed)
+    except ValueError as error:
+        raise MessageError(f"{path}: {error}") from error
+    node = read_value(typed, "", problems)
+    if problems or node is None:
+        raise MessageError(_NO_FIELD.format(text))
+    return node.plain()
+
+
+def _content(path: str, file: str) -> str:
+    """Returns the text of a file that `FIELD=@FILE` names.
+
+    Raises:
+        MessageError: it cannot be read.
+    """
+    try:
+        return Path(file).read_text()
+    except OSError as error:
+        raise MessageError(f"{path}: {file}: {error.strerror}") from error
+    except ValueError as error:  # no UTF-8, or no name of a file
+        raise MessageError(f"{path}: {file}: {error}") from error
 
 
 def _fitting(value: Any, kind: str, path: str) -> Any:

@@ -1,6 +1,7 @@
 """`fwk send` builds messages from its arguments."""
 
 import re
+from pathlib import Path
 
 import pytest
 
@@ -33,3 +34,14 @@ def test_fields_are_set_by_name_and_others_are_zero() -> None:
 def test_values_that_do_not_fit_are_named(fields: list[str], error: str) -> None:
     with pytest.raises(MessageError, match=re.escape(error)):
         made("robot.motor_command_t", fields)
+
+
+def test_text_of_a_file_is_taken_as_it_is(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text("# A shot.\nball: {x_m: 1.0}\n")
+    assert made("soccer.play_scenario_t", [f"text=@{file}"]).text == file.read_text()
+    with pytest.raises(MessageError, match=re.escape(f"text: {tmp_path}/no.yaml: No such file or directory")):
+        made("soccer.play_scenario_t", [f"text=@{tmp_path}/no.yaml"])
+    file.write_bytes(b"\xff")
+    with pytest.raises(MessageError, match=r"mine\.yaml: .*utf-8"):
+        made("soccer.play_scenario_t", [f"text=@{file}"])

@@ -23,7 +23,8 @@ from procs.behaviour.view import Frame, View, view_of
 from procs.model.field import Field
 from procs.model.game_states import State
 from procs.model.robot import Player
-from procs.scenarios.scenario import Scenario, system_of
+from procs.scenarios.file import Scenario
+from procs.scenarios.scenario import system_of
 
 PLAYERS = {
     "zoe": Player(team="cyan", number=1),

@@ -16,9 +16,10 @@ from procs.behaviour.skiller import Skiller
 from procs.drivers.base import Base
 from procs.drivers.kicker import Kicker
 from procs.referee.referee import Referee
-from procs.scenarios.crew import Action
+from procs.scenarios.action import Action
+from procs.scenarios.file import Scenario
 from procs.scenarios.perfect_world import PerfectWorldModel
-from procs.scenarios.scenario import Scenario, system_of
+from procs.scenarios.scenario import system_of
 from procs.simulation.simulator import Simulator
 
 PARTS: dict[str, type[Component]] = {

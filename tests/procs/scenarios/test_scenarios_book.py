@@ -10,7 +10,8 @@ from fwk.testing import ExpressionError, Verdict
 from procs.scenarios import __main__ as command
 from procs.scenarios import evaluation
 from procs.scenarios.dummy import Dummy
-from procs.scenarios.scenario import BOOK, Scenario, ScenarioError, read, run
+from procs.scenarios.file import BOOK, Scenario, ScenarioError
+from procs.scenarios.scenario import read, run
 
 SCENARIOS = sorted(BOOK.glob("*.yaml"))
 
@@ -63,7 +64,7 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
         ("settings: {cyan2/agent: {}}\nrobots: [cyan1]", ScenarioError, "no component 'cyan2/agent'; did you mean"),
         ("settings: {world/referee: {half_s: -1}}", ScenarioError, "world/referee.half_s: Input should be greater"),
         ("settings: {world/crew: {actions: []}}", ScenarioError, "settings: world/crew has its actions under commands"),
-        ("commands: [{at_s: 1}]", ScenarioError, "commands.0: give one of place_ball, place_robot, referee"),
+        ("commands: [{at_s: 1}]", ScenarioError, "commands.0: give one of place_ball, place_robot, hold_robot"),
         ("commands: [{place_ball: {x: 1}}]", ScenarioError, "commands.0: place_ball: there is no 'x'; there are x_m"),
         ("commands: [{place_robot: {x_m: left}}]", ScenarioError, "x_m is 'left'; it should be a number"),
         ("robots: [", ScenarioError, "mine.yaml:1: expected"),
@@ -129,6 +130,61 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
             ScenarioError,
             "commands.0: referee: no team 'red'; there are cyan, magenta",
         ),
+        ("robots: [cyan]\nat_end: [reasons]", ScenarioError, "robots: 'cyan' plays for no team; names such as cyan1"),
+        ("seeing: [cyan0]\nat_end: [reasons]", ScenarioError, "robots: 'cyan0' plays for no team"),
+        (f"robots: [cyan{9**20}]", ScenarioError, "has a number that is too large; use one of nine digits at most"),
+        (f"dummies: [cyan{'9' * 5000}]", ScenarioError, "has a number that is too large"),
+        (
+            "settings: {world/simulator: {players: {cyan1: {team: cyan, number: 9999999999}}}}",
+            ScenarioError,
+            "world/simulator.players.cyan1.number: Input should be less than or equal to 2147483647",
+        ),
+        ("robots: [me]\nsettings: {world/referee: {players: 3}}", ScenarioError, "'me' plays for no team"),
+        ("ball: {x_m: 12.5}", ScenarioError, r"mine.yaml: ball: \(12.5, 0\) is outside the walls; x is at most 12 m"),
+        ("ball: {z_m: 9}", ScenarioError, "mine.yaml: ball: z_m is 9.0; it should be from 0 to 5"),
+        (
+            "commands: [{place_ball: {vx_m_s: 99}}]",
+            ScenarioError,
+            "commands.0: place_ball: vx_m_s is 99.0; it should be",
+        ),
+        (
+            "robots: [cyan1]\ncommands: [{place_robot: {robot: cyan1, y_m: -8.5}}]",
+            ScenarioError,
+            r"commands.0: place_robot: \(0, -8.5\) is outside the walls; x is at most 12 m, y 8 m",
+        ),
+        ("commands: [{referee: {name: goal}}]", ScenarioError, "commands.0: referee: 'goal' needs a team: cyan or"),
+        ("commands: [{referee: {name: throwin}}]", ScenarioError, "commands.0: referee: 'throwin' needs a team"),
+        (
+            "commands: [{referee: {name: repair}}]",
+            ScenarioError,
+            "commands.0: referee: 'repair' needs a team or a robot",
+        ),
+        (
+            "robots: [cyan1]\ncommands: [{referee: {name: red_card, robot: cyan1, team: magenta}}]",
+            ScenarioError,
+            "commands.0: referee: cyan1 does not play for magenta",
+        ),
+        ("commands: [{at_s: '1', reset: {}}]", ScenarioError, "commands.0.at_s: Input should be a valid number"),
+        ("commands: [{at_s: true, reset: {}}]", ScenarioError, "commands.0.at_s: Input should be a valid number"),
+        (
+            "commands: [{at_s: -1, reset: {}}]",
+            ScenarioError,
+            "commands.0.at_s: Input should be greater than or equal to 0",
+        ),
+        ("time_s: 1.0e+300", ScenarioError, "time_s: Input should be less than or equal to 86400"),
+        (
+            "commands: [{freeze: {}}]",
+            ScenarioError,
+            "commands.0: freeze: frozen is missing; it should be true or false",
+        ),
+        ("commands: [{freeze: {frozen: 1}}]", ScenarioError, "commands.0: freeze: frozen is 1; it should be a bool"),
+        ("commands: [{freeze: true}]", ScenarioError, "commands.0.freeze: Input should be a valid dictionary"),
+        (
+            "commands: [{reset: {ball: true}}]",
+            ScenarioError,
+            "commands.0: reset: there is no 'ball'; there are keep_ball",
+        ),
+        ("commands: [{hold_robot: {robot: cyan2, held: true}}]", ScenarioError, "hold_robot: no robot 'cyan2'"),
         ("robots: [cyan1]\ncommands: [{place_robot: {}}]", ScenarioError, "place_robot: no robot ''; there are cyan1"),
     ],
 )
@@ -188,13 +244,24 @@ def test_command_that_is_refused_breaks_a_scenario(tmp_path: Path) -> None:
 def test_command_has_nothing_of_the_one_before(tmp_path: Path) -> None:
     text = (
         "dummies: [cyan2, magenta2]\ncommands:\n  - {at_s: 0.1, place_ball: {x_m: 3, y_m: 2, vy_m_s: 1}}\n"
-        "  - {at_s: 0.2, place_ball: {x_m: 5}}\n  - {at_s: 0.3, referee: {name: goal, team: cyan}}\n"
-        "  - {at_s: 0.4, referee: {name: goal}}\n"
+        "  - {at_s: 0.2, place_ball: {x_m: 5}}\n"
+        "  - {at_s: 0.3, referee: {name: yellow_card, team: magenta, robot: magenta2}}\n"
+        "  - {at_s: 0.4, referee: {name: repair, robot: cyan2}}\n"
         "in_order: [abs(y(ball)) > 1, x(ball) > 4.9 and abs(y(ball)) < 0.1 and ball_speed < 0.1]\ntime_s: 0.8\n"
     )
-    assert run(written(tmp_path, text)).broken == [
-        "refused: the command at 0.4 s: a goal needs a team: cyan or magenta"
-    ]
+    assert run(written(tmp_path, text)).broken == []
+
+
+def test_scenario_freezes_holds_and_resets(tmp_path: Path) -> None:
+    text = (
+        "robots: [cyan2]\nplaces: {cyan2: [-3.0, 0.0, 0.0]}\nball: {x_m: 4.0, y_m: 3.0}\ncommands:\n"
+        "  - {at_s: 1.0, freeze: {frozen: true}}\n  - {at_s: 2.0, freeze: {frozen: false}}\n"
+        "  - {at_s: 2.5, hold_robot: {robot: cyan2, held: true}}\n  - {at_s: 3.5, reset: {keep_ball: true}}\n"
+        "in_order:\n  - x(cyan2) > -2.8\n  - world.match_events.frozen\n  - not world.match_events.frozen\n"
+        "  - x(cyan2) > -1.9 and abs(world.ground_truth.robots[0].vx_m_s) < 0.001\n  - x(cyan2) < -2.9\n"
+        "at_end: ['distance(ball, (4.0, 3.0)) < 0.1']\ntime_s: 3.7\n"
+    )
+    assert run(written(tmp_path, text)).broken == []
 
 
 @pytest.mark.parametrize(
