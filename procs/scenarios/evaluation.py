@@ -21,21 +21,25 @@ def played(_file: str, _time_s: float, seed: int) -> dict[str, list[str]]:
     The `seed` replaces that of each scenario. Each is played to its own limit of time: one that is cut off before
     would count as failed.
     """
-    found = {}
-    for path in sorted(BOOK.glob("*.yaml")):
-        try:
-            found[path.stem] = outcome(read(path).model_copy(update={"seed": seed})).broken
-        except Exception as error:  # of a component; the other scenarios are worth a result
-            found[path.stem] = [f"{type(error).__name__}: {error}"]
-    return found
+    return {path.stem: broken_in(path, seed) for path in sorted(BOOK.glob("*.yaml"))}
+
+
+def broken_in(path: Path, seed: int) -> list[str]:
+    """Plays the scenario of a file with a seed; returns the conditions that do not hold.
+
+    A component that fails counts as one: the other scenarios are worth a result.
+    """
+    try:
+        return outcome(read(path).model_copy(update={"seed": seed})).broken
+    except Exception as error:
+        return [f"{type(error).__name__}: {error}"]
 
 
 def report(results: Sequence[Mapping[str, Sequence[str]]], folder: Path) -> str:
     """Writes table.csv and table.json into the folder, and measures.png if matplotlib is there; returns the table."""
     names = sorted({name for result in results for name in result})
     outcomes = {name: [not result[name] for result in results if name in result] for name in names}
-    rows = [_row(ALL, [ok for each in outcomes.values() for ok in each])]
-    rows += [_row(name, each) for name, each in outcomes.items()]
+    rows = rows_of(outcomes)
     (folder / "table.csv").write_text(as_csv(rows))
     (folder / "table.json").write_text(as_json(rows))
     broken = sorted({f"{name}: {text}" for result in results for name, texts in result.items() for text in texts})
@@ -45,6 +49,12 @@ def report(results: Sequence[Mapping[str, Sequence[str]]], folder: Path) -> str:
     except ImportError:
         return f"{text}\nno picture: matplotlib is not installed; type: {INSTALL}"
     return text
+
+
+def rows_of(outcomes: Mapping[str, Sequence[bool]]) -> list[Row]:
+    """Returns how often all scenarios and each succeed; `outcomes` are those of each scenario."""
+    every = _row(ALL, [ok for each in outcomes.values() for ok in each])
+    return [every, *(_row(name, each) for name, each in outcomes.items())]
 
 
 def _row(name: str, outcomes: Sequence[bool]) -> Row:

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from fwk.testing import ExpressionError, Verdict
-from procs.scenarios import __main__ as command
-from procs.scenarios import evaluation
+from procs.scenarios import command, evaluation
 from procs.scenarios.dummy import Dummy
 from procs.scenarios.file import BOOK, Scenario, ScenarioError
 from procs.scenarios.scenario import read, run

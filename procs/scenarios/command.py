@@ -1,0 +1,109 @@
+"""Plays scenarios and says which succeed; without a file the book."""
+
+import argparse
+import os
+import re
+import sys
+import traceback
+from collections.abc import Mapping, Sequence
+from concurrent.futures import as_completed
+from difflib import get_close_matches
+from pathlib import Path
+
+from fwk.testing import ExpressionError, Verdict
+from fwk.testing.executors import executor_of
+from procs.evaluation.table import as_text
+from procs.scenarios.evaluation import broken_in, rows_of
+from procs.scenarios.file import BOOK, Scenario, ScenarioError
+from procs.scenarios.scenario import outcome, read
+
+_MOST = 100_000  # seeds
+
+
+def main() -> int:
+    """Plays the scenarios of the command line; returns 0 if all succeed, 1 if one fails, 2 for a bad file."""
+    parser = argparse.ArgumentParser(prog="python -m procs.scenarios", description=__doc__)
+    parser.add_argument(
+        "files", nargs="*", type=Path, help="scenario files; names in the book need no folder or ending"
+    )
+    choice = parser.add_mutually_exclusive_group()
+    choice.add_argument("--seed", type=_seed, metavar="N", help="plays all with this seed instead of their own")
+    choice.add_argument(
+        "--seeds", type=_seeds, metavar="FIRST..LAST", help="plays each with all these seeds, in parallel"
+    )
+    words = parser.parse_args()
+    scenarios, wrong = {}, False
+    for file in words.files or sorted(BOOK.glob("*.yaml")):
+        path = file if file.exists() else BOOK / f"{file.name.removesuffix('.yaml')}.yaml"
+        try:
+            scenarios[path] = read(path)
+        except (ScenarioError, OSError) as error:
+            print(_said(error, file), file=sys.stderr)
+            wrong = True
+    if wrong:
+        return 2
+    return _play_often(list(scenarios), words.seeds) if words.seeds else _play_once(scenarios, words.seed)
+
+
+def _play_once(scenarios: Mapping[Path, Scenario], seed: int | None) -> int:
+    failed, wrong = 0, False
+    for path, scenario in scenarios.items():
+        try:
+            verdict = outcome(scenario if seed is None else scenario.model_copy(update={"seed": seed}))
+        except ExpressionError as error:
+            print(f"{path}: {error}", file=sys.stderr)
+            wrong = True
+            continue
+        except Exception as error:  # of a component
+            traceback.print_exc()
+            verdict = Verdict(broken=[f"{type(error).__name__}: {error}"])
+        failed += not verdict.ok
+        print(
+            f"{'ok    ' if verdict.ok else 'failed'} {path.stem} ({verdict.time_s:.1f} s)",
+            *verdict.broken,
+            sep="\n       ",
+        )
+    return 2 if wrong else int(failed > 0)
+
+
+def _play_often(paths: Sequence[Path], seeds: range) -> int:
+    """Plays every scenario with every seed; prints how often each succeeds, and what each seed broke."""
+    runs = [(path, seed) for path in paths for seed in seeds]
+    stems = [path.stem for path in paths]
+    names = {path: path.stem if stems.count(path.stem) == 1 else str(path) for path in paths}
+    with executor_of(min(os.cpu_count() or 1, len(runs))) as executor:
+        futures = {executor.submit(broken_in, path, seed): (path, seed) for path, seed in runs}
+        for count, future in enumerate(as_completed(futures), 1):
+            path, seed = futures[future]
+            if future.exception() or future.result():
+                print(f"{count} of {len(runs)}: {names[path]} failed with seed {seed}", file=sys.stderr)
+        broken = {
+            run: [str(failure)] if (failure := future.exception()) else future.result()
+            for future, run in futures.items()
+        }
+    print(as_text(rows_of({names[path]: [not broken[path, seed] for seed in seeds] for path in paths})))
+    for (path, seed), texts in broken.items():
+        for text in texts:
+            print(f"{names[path]}, seed {seed}: {text}")
+    return int(any(broken.values()))
+
+
+def _seed(text: str) -> int:
+    if not (text.isascii() and text.isdecimal()):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a seed; use a whole number from 0")
+    return int(text)
+
+
+def _seeds(text: str) -> range:
+    words = re.fullmatch(r"(\d{1,18})\.\.(\d{1,18})", text, re.ASCII)
+    first, last = (int(words[1]), int(words[2])) if words else (1, 0)
+    if not 0 <= last - first < _MOST:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a range of {_MOST} seeds at most; use such as 1..20")
+    return range(first, last + 1)
+
+
+def _said(error: ScenarioError | OSError, file: Path) -> str:
+    if isinstance(error, FileNotFoundError):
+        near = get_close_matches(file.name.removesuffix(".yaml"), [each.stem for each in BOOK.glob("*.yaml")], 1)
+        return f"{file}: there is no such scenario" + (f"; did you mean '{near[0]}'?" if near else "")
+    return f"{file}: {error.strerror}" if isinstance(error, OSError) else str(error)

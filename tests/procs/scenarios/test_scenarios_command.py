@@ -1,0 +1,73 @@
+"""`python -m procs.scenarios`: many seeds, and its end when the terminal or the disk is gone."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from procs.scenarios import command
+
+ROOT = Path(__file__).parents[3]
+COMMAND = (sys.executable, "-m", "procs.scenarios")
+QUICK = ("match-ends", "kick-off-own-halves")
+
+
+def test_seeds_are_played_with_files_of_ones_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    good, bad = tmp_path / "good.yaml", tmp_path / "bad.yaml"
+    good.write_text("dummies: [cyan2]\nalways: [x(cyan2) < 0]\ntime_s: 0.2\n")
+    bad.write_text("dummies: [cyan2]\nalways: [x(cyan2) > 0]\ntime_s: 0.2\n")
+    monkeypatch.setattr("sys.argv", ["scenarios", str(good), str(bad), "--seeds", "3..5"])
+    assert command.main() == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[:3] for line in lines if line.startswith("good ")] == [["good", "1.000", "0.438"]]
+    assert lines[-3:] == [f"bad, seed {seed}: 0.05 s: not x(cyan2) > 0" for seed in (3, 4, 5)]
+    monkeypatch.setattr("sys.argv", ["scenarios", str(good), "--seeds", "1..2"])
+    assert command.main() == 0
+
+
+@pytest.mark.parametrize("text", ["0", "3..1", "a..b", "1..999999", "-1..2"])
+def test_seeds_that_are_no_range_are_refused(
+    text: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["scenarios", f"--seeds={text}"])
+    with pytest.raises(SystemExit, match="2"):
+        command.main()
+    assert f"'{text}' is not a range of 100000 seeds at most; use such as 1..20" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [QUICK, ("--help",)])
+def test_full_disk_ends_the_command_in_a_sentence(words: tuple[str, ...]) -> None:
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([*COMMAND, *words], stdout=full, stderr=subprocess.PIPE, text=True, cwd=ROOT, check=False)
+    assert (done.returncode, done.stderr) == (2, "error: the output cannot be written: No space left on device\n")
+
+
+def test_closed_pipe_ends_the_command_silently() -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run([*COMMAND, *QUICK], stdout=writing, stderr=subprocess.PIPE, cwd=ROOT, check=False)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (1, b"")
+
+
+@pytest.mark.parametrize("words", [(), ("--seeds", "1..500")])
+def test_interrupt_ends_the_command_silently(words: tuple[str, ...], tmp_path: Path) -> None:
+    first, endless = tmp_path / "first.yaml", tmp_path / "endless.yaml"
+    first.write_text("dummies: [cyan2]\nalways: [x(cyan2) > 0]\ntime_s: 0.2\n")
+    endless.write_text("dummies: [cyan2]\nalways: [x(cyan2) < 0]\ntime_s: 86400\n")
+    begun = [*COMMAND, str(first), str(endless), *words]
+    with subprocess.Popen(begun, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT,
+                          env={**os.environ, "PYTHONUNBUFFERED": "1"}) as running:  # fmt: skip
+        assert running.stdout
+        assert running.stderr
+        heard = running.stderr if words else running.stdout
+        assert "fail" in heard.readline()
+        running.send_signal(signal.SIGINT)
+        _, errors = running.communicate()
+    assert running.returncode == 130
+    assert "Traceback" not in errors
