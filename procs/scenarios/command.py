@@ -15,7 +15,7 @@ from fwk.testing.executors import executor_of
 from procs.evaluation.table import as_text
 from procs.scenarios.evaluation import broken_in, rows_of
 from procs.scenarios.file import BOOK, Scenario, ScenarioError
-from procs.scenarios.scenario import outcome, read
+from procs.scenarios.scenario import launch_file_of, outcome, read
 
 _MOST = 100_000  # seeds
 
@@ -31,25 +31,38 @@ def main() -> int:
     choice.add_argument(
         "--seeds", type=_seeds, metavar="FIRST..LAST", help="plays each with all these seeds, in parallel"
     )
+    parser.add_argument(
+        "--launch-file",
+        action="store_true",
+        help="plays nothing, and prints the launch file with which fwk-launch plays a scenario in real processes",
+    )
     words = parser.parse_args()
+    if words.launch_file and (len(words.files) != 1 or words.seeds):
+        parser.error(
+            "--launch-file is that of one scenario with one seed; name one file, such as pass-reaches-the-mate"
+        )
     scenarios, wrong = {}, False
     for file in words.files or sorted(BOOK.glob("*.yaml")):
         path = file if file.exists() else BOOK / f"{file.name.removesuffix('.yaml')}.yaml"
         try:
-            scenarios[path] = read(path)
+            scenario = read(path)
+            scenarios[path] = scenario if words.seed is None else scenario.model_copy(update={"seed": words.seed})
         except (ScenarioError, OSError) as error:
             print(_said(error, file), file=sys.stderr)
             wrong = True
     if wrong:
         return 2
-    return _play_often(list(scenarios), words.seeds) if words.seeds else _play_once(scenarios, words.seed)
+    if words.launch_file:
+        print(*(launch_file_of(scenario, path.stem) for path, scenario in scenarios.items()), end="")
+        return 0
+    return _play_often(list(scenarios), words.seeds) if words.seeds else _play_once(scenarios)
 
 
-def _play_once(scenarios: Mapping[Path, Scenario], seed: int | None) -> int:
+def _play_once(scenarios: Mapping[Path, Scenario]) -> int:
     failed, wrong = 0, False
     for path, scenario in scenarios.items():
         try:
-            verdict = outcome(scenario if seed is None else scenario.model_copy(update={"seed": seed}))
+            verdict = outcome(scenario)
         except ExpressionError as error:
             print(f"{path}: {error}", file=sys.stderr)
             wrong = True

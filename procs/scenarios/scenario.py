@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any, get_type_hints
 
+import yaml
 from pydantic import ValidationError
 
 from fwk import Component, Config
@@ -117,17 +118,41 @@ def _components(scenario: Scenario) -> dict[str, type[Component]]:
 
 def system_of(scenario: Scenario) -> MemorySystem:
     """Builds the system of a scenario in memory."""
+    settings, channels, turns = _settings(scenario)
+    return MemorySystem(_components(scenario), settings, channels, scenario.seed, turns=turns)
+
+
+def launch_file_of(scenario: Scenario, name: str) -> str:
+    """Returns a launch file with which `fwk-launch` plays a scenario in real processes, with the same messages."""
+    settings, channels, turns = _settings(scenario)
+    components: dict[str, dict[str, Any]] = {}
+    for component, kind in _components(scenario).items():
+        part = components[component] = {"use": f"{kind.__module__}:{kind.__name__}"}
+        if component in turns:
+            part["every"], part["offset"] = turns[component]
+        part |= {"config": settings[component]} if settings.get(component) else {}
+        part |= {"channels": channels[component]} if component in channels else {}
+    text = {"name": name, "seed": scenario.seed, **_VIEWS, "components": components}
+    heading = f"# fwk-launch FILE --time {scenario.time_s:g} plays the scenario {name}.\n"
+    return heading + yaml.safe_dump(text, sort_keys=False)
+
+
+_VIEWS = {"scoreboard": "procs.view.scoreboard:headline", "video": "procs.view.top_view:picture_with_beliefs"}
+Settings = dict[str, dict[str, Any]]
+
+
+def _settings(scenario: Scenario) -> tuple[Settings, dict[str, dict[str, str]], dict[str, tuple[int, int]]]:
+    """Returns settings, channels, and `every` with `offset`, by component, where they are not the usual ones."""
     rules = dict(scenario.rules)
     if scenario.ball:  # play begins at once: the kick-off is free, and the ball is put elsewhere
         rules = {"kick_off_stoppage_s": 0.0, "positions_s": 0.0} | rules
-    settings: dict[str, dict[str, Any]] = {
+    settings: Settings = {
         "world/simulator": {"starts": scenario.places, "realism": scenario.realism},
         "world/referee": rules,
         CREW: {"actions": [action.model_dump(exclude_none=True) for action in scenario.actions]},
     }
-    components = _components(scenario)
     channels, turns = {}, {}
-    for name, part in components.items():
+    for name, part in _components(scenario).items():
         if part is Percepts:
             settings[name], turns[name] = {"realism": scenario.realism}, (2, 0)
         if part is Radio:
@@ -136,7 +161,7 @@ def system_of(scenario: Scenario) -> MemorySystem:
             channels[name] = {port: channel.format(team=team) for port, channel in _RADIO.items()}
     for component, more in scenario.settings.items():
         settings[component] = settings.get(component, {}) | more
-    return MemorySystem(components, settings, channels, scenario.seed, turns=turns)
+    return settings, channels, turns
 
 
 def run(path: Path) -> Verdict:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from fwk.testing import launch_plan
 from procs.scenarios import command
 
 ROOT = Path(__file__).parents[3]
@@ -38,6 +39,32 @@ def test_seeds_that_are_no_range_are_refused(
     with pytest.raises(SystemExit, match="2"):
         command.main()
     assert f"'{text}' is not a range of 100000 seeds at most; use such as 1..20" in capsys.readouterr().err
+
+
+def test_launch_file_has_parts_seed_and_commands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["scenarios", "carried-off-robot-finds-its-place", "--launch-file", "--seed", "7"])
+    assert command.main() == 0
+    file = tmp_path / "carried.yaml"
+    file.write_text(capsys.readouterr().out)
+    plan = launch_plan(str(file))
+    parts = {each.name: each for each in plan.components}
+    assert (plan.name, plan.seed, plan.period_us) == ("carried-off-robot-finds-its-place", 7, 50_000)
+    assert parts["cyan2/localization"].config["start_x_m"] == -3.0
+    assert parts["cyan2/percepts"].every == 2
+    assert parts["team_cyan/radio"].channels["inboxes"] == ("cyan2/team_inbox",)
+    assert [each["at_s"] for each in parts["world/crew"].config["actions"]] == [0.5, 0.1]
+
+
+@pytest.mark.parametrize("words", [[], ["match-ends", "kick-off-own-halves"], ["match-ends", "--seeds", "1..2"]])
+def test_launch_file_is_that_of_one_scenario(
+    words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["scenarios", "--launch-file", *words])
+    with pytest.raises(SystemExit, match="2"):
+        command.main()
+    assert "--launch-file is that of one scenario with one seed" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("words", [QUICK, ("--help",)])

@@ -5,6 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from fwk.lcm import messages
+from procs.scenarios.file import BOOK
+from procs.scenarios.scenario import launch_file_of, read, system_of
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, write_files
@@ -53,3 +56,17 @@ def test_scenario_of_a_file_is_played_and_replayed(launch: Launch, ports: PortBl
     assert any(math.dist((each.ball_x_m, each.ball_y_m), (6.0, 0.5)) < 0.01 for each in truths)
     assert [each.frozen for each in recording.decoded("world/freeze@world/crew")] == [True, False, True, False]
     assert "byte for byte" in run.fwk("replay", str(log), "--verify")
+
+
+def test_launch_file_of_a_scenario_plays_the_same(launch: Launch, ports: PortBlock, tmp_path: Path) -> None:
+    scenario = read(BOOK / "carried-off-robot-finds-its-place.yaml").model_copy(update={"seed": 7})
+    write_files(tmp_path, {"mine.yaml": launch_file_of(scenario, "mine")})
+    run = launch("mine.yaml", "--ticks", "40", "--speed", "max", "--record", "log.lcm")
+    assert run.wait() == 0, run.text
+    recording, system = Recording(tmp_path / "log.lcm"), system_of(scenario)
+    system.tick(40)
+    for channel in ("world/ground_truth", "world/game_state", "cyan2/pose", "cyan2/wheel_command"):
+        kind = type(system.newest(channel))
+        played = [repr(messages.decode(kind, data, channel)) for data in system.sent[channel]]
+        assert len(played) > 15
+        assert list(map(repr, recording.decoded(channel))) == played, channel
