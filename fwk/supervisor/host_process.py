@@ -14,7 +14,7 @@ from lcmtypes.core import component_state_t, histogram_t, host_counters_t
 
 REAL_TIME_STOP_US = 3 * US_PER_S
 """Default time to end in real time; in lockstep the loop waits as long as it takes."""
-NOT_STARTED = "does not start with the run"
+NOT_STARTED = "does not start with the run; 'fwk load' starts it"
 
 
 class HostState(StrEnum):

@@ -60,7 +60,7 @@ def test_a_user_starts_when_its_vision_master_is_ready(start: Start, ports: Port
     launched.until("r/finder waits for r/camera")
     assert states()["r/finder"] == ("loaded", "waits for r/camera")
     assert states()["r/camera"] == ("init", "")
-    assert states()["r/follower"] == ("stopped", "does not start with the run")
+    assert states()["r/follower"] == ("stopped", "does not start with the run; 'fwk load' starts it")
     (tmp_path / "go").touch()
     assert launched.wait() == 0, launched.text
     recording = Recording(tmp_path / "log.lcm")
