@@ -97,17 +97,19 @@ class Results(Sequence[Any]):
 class Campaign:
     """Results of the runs of one launch file in a folder, a file a seed."""
 
-    def __init__(self, folder: Path, about: Mapping[str, Any], code: str = "") -> None:
+    def __init__(
+        self, folder: Path, about: Mapping[str, Any], code: str = "", flaw_in: Callable[[Any], str] = lambda _: ""
+    ) -> None:
         """Opens or begins a campaign; `about` states launch file, logical time and evaluation.
 
-        The digest `code` of the modules is kept with each result.
+        The digest `code` of the modules is kept with each result. `flaw_in` says what is wrong with a result.
 
         Raises:
             FolderError: the folder holds results of another campaign, or another is played into it; or what the
                 folder says about its campaign is damaged, or cannot be read or written.
             OSError: there is no folder, and none can be made.
         """
-        self._folder, self._code = folder, code
+        self._folder, self._code, self._flaw_in = folder, code, flaw_in
         self._flaws: dict[int, str] = {}
         """Flaw of the result of each seed whose file was read; an empty text if the result is whole."""
         folder.mkdir(parents=True, exist_ok=True)
@@ -202,6 +204,8 @@ class Campaign:
             for future in as_completed(running):
                 seed = running.pop(future)  # a future keeps its result
                 text, failure = _outcome(future)
+                if not failure and (flaw := _flaw_of(text.encode(), self._flaw_in)):
+                    failure = f"the evaluation returned a result that is not one: {flaw}"
                 if failure:
                     failures[seed] = failure
                     continue
@@ -222,7 +226,7 @@ class Campaign:
         """Returns why a seed has no result that counts, or an empty text; a file is read once, as it may be large."""
         if seed not in self._flaws:
             content = _read(self._file(seed))
-            self._flaws[seed] = _ABSENT if content is None else _flaw_of(content)
+            self._flaws[seed] = _ABSENT if content is None else _flaw_of(content, self._flaw_in)
         return self._flaws[seed]
 
     def _file(self, seed: int) -> Path:
@@ -279,13 +283,13 @@ def _text_of(result: Any) -> str:
     return _TEXT_OR_UNKNOWN.sub(lambda found: _UNKNOWN_TO_JSON.get(found[0], found[0]), text)
 
 
-def _flaw_of(content: bytes) -> str:
-    """Returns what is wrong with the content of a file, or an empty text."""
+def _flaw_of(content: bytes, flaw_in: Callable[[Any], str] = lambda _: "") -> str:
+    """Returns what is wrong with the content of a file, or with the value that it holds, or an empty text."""
     try:
         value = json.loads(content)
     except (ValueError, RecursionError) as error:
         return f"it is no JSON ({error})" if content else "it is empty"
-    return "it says nothing" if value in _EMPTY else ""
+    return "it says nothing" if value in _EMPTY else flaw_in(value)
 
 
 def _read(file: Path) -> bytes | None:

@@ -5,8 +5,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from fwk.testing import launch_plan, system_of
 from fwk.testing.executors import INSTALL
 from procs.evaluation.beliefs import Samples, believed
@@ -17,11 +15,13 @@ from procs.evaluation.innovations import innovations
 from procs.evaluation.piece import Piece, piece_of
 from procs.evaluation.plots import plot
 from procs.evaluation.possession import possession
+from procs.evaluation.results import flaw_in, samples_in
 from procs.evaluation.sightings import sightings
-from procs.evaluation.table import MEASURES, Measure, as_csv, as_json, as_text, rate, ratio, root_ratio, rows_of
+from procs.evaluation.table import as_csv, as_json, as_text, rows_of
 from procs.evaluation.team_ball import team_ball
-from procs.model.frames import Floats
 from procs.model.robot import RobotModel
+
+__all__ = ["flaw_in", "measured", "report", "samples_of"]
 
 
 def measured(
@@ -60,10 +60,7 @@ def report(results: Sequence[Mapping[str, list[float] | list[list[float]]]], fol
 
     Measures without a value are left out: no match has all, and a result of former code may have others.
     """
-    pieces: list[Samples] = [
-        {each.name: _samples(result.get(each.name, []), each) for each in MEASURES} for result in results
-    ]
-    rows = [row for row in rows_of(pieces) if not math.isnan(row.value)]
+    rows = [row for row in rows_of([samples_in(result) for result in results]) if not math.isnan(row.value)]
     (folder / "table.csv").write_text(as_csv(rows))
     (folder / "table.json").write_text(as_json(rows))
     try:
@@ -71,9 +68,3 @@ def report(results: Sequence[Mapping[str, list[float] | list[list[float]]]], fol
     except ImportError:
         return f"{as_text(rows)}\nno picture: matplotlib is not installed; type: {INSTALL}"
     return as_text(rows)
-
-
-def _samples(values: list[float] | list[list[float]], measure: Measure) -> Floats:
-    """Returns samples as they were measured; an empty list of pairs gets its two columns back."""
-    pairs = measure.statistic in (rate, ratio, root_ratio)
-    return np.array(values, np.float64).reshape(-1, 2) if pairs else np.array(values, np.float64)

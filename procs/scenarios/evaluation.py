@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from fwk.testing.executors import INSTALL
 from procs.evaluation.plots import plot
@@ -33,6 +34,13 @@ def broken_in(path: Path, seed: int) -> list[str]:
         return outcome(read(path).model_copy(update={"seed": seed})).broken
     except Exception as error:
         return [f"{type(error).__name__}: {error}"]
+
+
+def flaw_in(result: Any) -> str:
+    """Returns why a result is not one of scenarios, or an empty text."""
+    lists = result.values() if isinstance(result, Mapping) else [None]
+    whole = all(isinstance(each, list) and all(isinstance(text, str) for text in each) for each in lists)
+    return "" if whole else "it should hold a list of texts for each scenario"
 
 
 def report(results: Sequence[Mapping[str, Sequence[str]]], folder: Path) -> str:

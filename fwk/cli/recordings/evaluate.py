@@ -72,7 +72,7 @@ def eval(  # noqa: A001 - the name of the command
     try:
         with _refused_by(folder):
             code = _short(sorted((modules | _inputs(plan)).items()))
-            campaign = Campaign(folder, about | ({"sets": sets} if sets else {}), code)
+            campaign = Campaign(folder, about | ({"sets": sets} if sets else {}), code, _flaw_in(plan))
             former = campaign.of_other_code(numbers)
         if former:
             typer.echo(f"note: {_formerly(former)}; remove their files from {folder} to play them again", err=True)
@@ -150,6 +150,13 @@ def _inputs(plan: Plan) -> dict[str, str]:
     module = sys.modules.get(plan.evaluation.partition(":")[0])
     files: Sequence[Path] = getattr(module, "INPUTS", ())
     return {str(file): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+
+
+def _flaw_in(plan: Plan) -> Callable[[Any], str]:
+    """Returns `flaw_in` of the module of the evaluation; without one each result is accepted."""
+    module = sys.modules.get(plan.evaluation.partition(":")[0])
+    found: Callable[[Any], str] = getattr(module, "flaw_in", lambda _: "")
+    return found
 
 
 def _formerly(seeds: Sequence[int]) -> str:

@@ -150,6 +150,30 @@ def test_damaged_result_is_named_and_played_again(launch: Path, content: bytes) 
     assert "damaged" not in evaluated(*words)[2]
 
 
+def _flaw_in(result: Any) -> str:
+    return "" if isinstance(result, dict) and "seed" in result else "it has no seed"
+
+
+@pytest.mark.parametrize("content", ["[1]", '{"a": 1}', "null"])
+def test_result_of_another_shape_is_played_again(launch: Path, monkeypatch: pytest.MonkeyPatch, content: str) -> None:
+    monkeypatch.setattr(cli_eval_parts, "flaw_in", _flaw_in, raising=False)
+    words = (str(launch), "--seeds", "1..3", "--jobs", "1")
+    assert evaluated(*words)[0] == 0
+    damaged = launch.parent / "eval-it" / "seed-2.json"
+    damaged.write_text(content)
+    code, table, said = evaluated(*words)
+    assert (code, table) == (0, "1 2 3\n")
+    assert "note: eval-it/seed-2.json is damaged: it has no seed; its seed is played again\n" in said
+    assert json.loads(damaged.read_text())["seed"] == 2
+
+
+def test_result_that_its_evaluation_refuses_fails(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cli_eval_parts, "flaw_in", lambda result: "it is odd" * (result["seed"] == 2), raising=False)
+    code, table, said = evaluated(str(launch), "--seeds", "2..3", "--jobs", "1")
+    assert (code, table) == (1, "3\n")
+    assert "seed 2: the evaluation returned a result that is not one: it is odd" in said
+
+
 def test_damaged_result_whose_run_fails_is_not_reported(launch: Path) -> None:
     assert evaluated(str(launch), "--seeds", "12", "--jobs", "1")[0] == 0
     (launch.parent / "eval-it" / "seed-13.json").write_text("{")

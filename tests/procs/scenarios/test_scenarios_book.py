@@ -329,6 +329,12 @@ def test_evaluation_of_the_book_counts_seeds(tmp_path: Path, monkeypatch: pytest
     assert sorted(file.name for file in out.iterdir()) == ["measures.png", "table.csv", "table.json"]
 
 
+@pytest.mark.parametrize("result", [[1], 3, {"mine": 1}, {"mine": "never"}, {"mine": [1]}, {"mine": None}])
+def test_result_that_is_none_of_scenarios_is_named(result: object) -> None:
+    assert evaluation.flaw_in(result) == "it should hold a list of texts for each scenario"
+    assert evaluation.flaw_in({"mine": [], "bad": ["never: x(ball) > 1"]}) == ""
+
+
 def test_command_prints_a_line_for_each_scenario(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
