@@ -9,16 +9,22 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from functools import partial
 from importlib import import_module
 from queue import SimpleQueue
-from threading import Lock
+from threading import Event, Lock, Thread
 from typing import Any
 
+from fwk.clock import US_PER_S, monotonic_us
 from fwk.model.parent_death import die_with_parent
 
 INSTALL = "pip install 'fwk[eval]'"
 CONNECT_S = 5.0
-"""Longest time for the connection to a scheduler, and for its first worker."""
+"""Longest time for the connection to a scheduler, for its first worker, and for its answers."""
+LOST_S = 30.0
+"""A cluster without workers, or without an answer, for that time plays no more runs."""
+_LOOK_S = 1.0
+"""Time between two looks at the workers of a cluster."""
 
 
 class CampaignError(RuntimeError):
@@ -95,6 +101,79 @@ class _Process:
         return True
 
 
+class _Workers(Executor):
+    """Workers of a Dask cluster; once all of them are gone, the runs that have no result fail."""
+
+    def __init__(self, client: Any, address: str) -> None:
+        """Begins to look whether there are workers."""
+        self._client, self._address = client, address
+        self._workers: Executor = client.get_executor(pure=False)
+        self._lock = Lock()
+        self._open = set[Future[Any]]()
+        self._lost = ""
+        self._ended = Event()
+        Thread(target=self._look, daemon=True).start()
+
+    def submit(self, work: Callable[..., Any], /, *words: Any, **named: Any) -> Future[Any]:
+        """Hands a call to the cluster; it fails if the cluster is lost."""
+        outcome: Future[Any] = Future()
+        with self._lock:
+            if self._lost:
+                outcome.set_exception(CampaignError(self._lost))
+                return outcome
+            self._open.add(outcome)
+        self._workers.submit(work, *words, **named).add_done_callback(partial(self._answer, outcome))
+        return outcome
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:  # noqa: ARG002 - of any executor
+        """Cancels the calls that have no result: the cluster would play them for nobody."""
+        self._ended.set()
+        self._workers.shutdown(wait=False)
+
+    def _answer(self, outcome: Future[Any], played: Future[Any]) -> None:
+        """Hands on how a call ended."""
+        if self._is_closed(outcome):
+            return
+        if played.cancelled():
+            outcome.set_exception(CampaignError("the connection to the cluster was lost"))
+        elif error := played.exception():
+            outcome.set_exception(error)
+        else:
+            outcome.set_result(played.result())
+
+    def _is_closed(self, outcome: Future[Any]) -> bool:
+        """Returns whether a call has its outcome, or is cancelled; if not, it gets its outcome next."""
+        with self._lock:
+            if outcome not in self._open:
+                return True
+            self._open.remove(outcome)
+            return not outcome.set_running_or_notify_cancel()
+
+    def _look(self) -> None:
+        """Looks for workers until the runs end; a worker that comes back in time goes on."""
+        cause, there_us = "", monotonic_us()
+        while monotonic_us() - there_us < LOST_S * US_PER_S:
+            if self._ended.wait(_LOOK_S):
+                return
+            cause = self._absence()
+            there_us = there_us if cause else monotonic_us()
+        with self._lock:
+            self._lost, left = cause, tuple(self._open)
+        for outcome in left:
+            if not self._is_closed(outcome):
+                outcome.set_exception(CampaignError(cause))
+
+    def _absence(self) -> str:
+        """Returns why the cluster plays nothing, or an empty text."""
+        try:
+            if self._client.nthreads(callback_timeout=CONNECT_S):
+                return ""
+        except Exception:  # of any kind: a connection that is being closed, or made again
+            return f"the Dask scheduler at {self._address} gave no answer for {LOST_S:g} s"
+        cure = f"start some with: dask worker {self._address}"
+        return f"the Dask scheduler at {self._address} had no workers for {LOST_S:g} s; {cure}"
+
+
 def _begin(parent: int) -> None:
     """Prepares a process for runs: Ctrl-C is the parent's."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -112,7 +191,7 @@ def executor_of(jobs: int, cluster: str = "", limit_s: float | None = None) -> I
     """Yields `jobs` processes of this machine, or the workers of the Dask cluster whose scheduler has an address.
 
     Ctrl-C ends the processes of this machine at once, and a run that takes longer than the limit ends its process.
-    Runs of a cluster have no limit: nothing ends a worker from outside.
+    Runs of a cluster have no limit: nothing ends a worker from outside. Each thread of its workers plays a run.
 
     Raises:
         CampaignError: Dask is not installed, there is no scheduler at that address, or it has no worker.
@@ -129,7 +208,8 @@ def executor_of(jobs: int, cluster: str = "", limit_s: float | None = None) -> I
         dask: Any = import_module("distributed")
     except ImportError as error:
         raise CampaignError(f"a cluster needs Dask, which is not installed; type: {INSTALL}") from error
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # failures of runs tell what it would tell at length
+    for name in ("distributed", "distributed.client"):  # failures of runs tell what it would tell at length
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         asyncio.run(_greet(cluster))
         client = dask.Client(cluster, timeout=CONNECT_S)
@@ -144,5 +224,5 @@ def executor_of(jobs: int, cluster: str = "", limit_s: float | None = None) -> I
             raise CampaignError(
                 f"the Dask scheduler at {cluster} has no workers; start some with: dask worker {cluster}"
             ) from error
-        with client.get_executor(pure=False) as workers:
+        with _Workers(client, cluster) as workers:
             yield workers

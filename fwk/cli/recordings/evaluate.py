@@ -32,7 +32,7 @@ def eval(  # noqa: A001 - the name of the command
     time_s: Annotated[
         float, typer.Option("--time", parser=seconds, metavar="SECONDS", help="logical time of each run")
     ] = 25.0,
-    jobs: Annotated[int, typer.Option(min=0, help="runs at the same time; 0: one a processor")] = 0,
+    jobs: Annotated[int, typer.Option(min=0, help="runs at the same time on this machine; 0: one a processor")] = 0,
     limit_s: Annotated[
         float | None,
         typer.Option(
@@ -51,11 +51,15 @@ def eval(  # noqa: A001 - the name of the command
 
     FOLDER gets the result of each seed, and what the launch file's evaluation makes of them: tables, pictures.
     A cluster needs: pip install 'fwk[eval]'; its workers need this project and the launch file at the same place.
+    It plays a run for each thread of its workers, so --jobs is refused; once it has no workers for 30 s, its runs fail.
 
     Exit codes: 0 measured; 1 a run failed, or there is no cluster; 2 bad input, or a folder that cannot hold results.
     """
-    if cluster and limit_s is not None:
-        typer.echo("error: nothing ends runs on a cluster; leave out --limit, or --cluster", err=True)
+    if cluster and (limit_s is not None or jobs):
+        cause = "nothing ends runs on a cluster; leave out --limit, or --cluster"
+        if limit_s is None:
+            cause = "the workers of a cluster play as many runs as they have threads; leave out --jobs, or --cluster"
+        typer.echo(f"error: {cause}", err=True)
         raise typer.Exit(BAD_INPUT)
     try:
         plan = load_plan(file, LaunchOptions(sets=sets or ()))

@@ -293,9 +293,16 @@ def test_run_that_hangs_fails_alone_at_its_limit(launch: Path) -> None:
     assert not [each for each in psutil.Process().children() if each.status() == psutil.STATUS_RUNNING]
 
 
-def test_limit_of_runs_on_a_cluster_is_refused(launch: Path) -> None:
-    code, _, said = evaluated(str(launch), "--limit", "2", "--cluster", "tcp://127.0.0.1:9")
-    assert (code, said) == (2, "error: nothing ends runs on a cluster; leave out --limit, or --cluster\n")
+@pytest.mark.parametrize(
+    ("option", "cause"),
+    [
+        ("--limit", "nothing ends runs on a cluster"),
+        ("--jobs", "the workers of a cluster play as many runs as they have threads"),
+    ],
+)
+def test_bounds_of_runs_on_a_cluster_are_refused(launch: Path, option: str, cause: str) -> None:
+    code, _, said = evaluated(str(launch), option, "2", "--cluster", "tcp://127.0.0.1:9")
+    assert (code, said) == (2, f"error: {cause}; leave out {option}, or --cluster\n")
 
 
 def test_file_gets_a_line_for_each_run(launch: Path) -> None:

@@ -1,11 +1,13 @@
 """`fwk eval` on the workers of a Dask cluster."""
 
 import json
+import logging
 import os
 import re
 import socket
 import sys
 from importlib import import_module
+from itertools import count
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -39,6 +41,66 @@ def test_lost_cluster_is_named(tmp_path: Path) -> None:
         list(runs)
 
 
+class Lost:
+    """Client of a cluster that plays its first call, and has the workers of each look in turn."""
+
+    def __init__(self, *looks: dict[str, int] | Exception) -> None:
+        self.queue, self.looks = Queue(), list(looks)
+
+    def get_executor(self, pure: bool) -> Queue:
+        return self.queue
+
+    def nthreads(self, callback_timeout: float) -> dict[str, int]:
+        look = self.looks.pop(0) if len(self.looks) > 1 else self.looks[0]
+        if isinstance(look, Exception):
+            raise look
+        return look
+
+
+@pytest.mark.parametrize(
+    ("look", "cause"),
+    [
+        ({}, "the Dask scheduler at tcp://it had no workers for 0.05 s; start some with: dask worker tcp://it"),
+        (TimeoutError(), "the Dask scheduler at tcp://it gave no answer for 0.05 s"),
+        (OSError("closed"), "the Dask scheduler at tcp://it gave no answer for 0.05 s"),
+    ],
+)
+def test_runs_without_workers_fail(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, look: Any, cause: str) -> None:
+    monkeypatch.setattr(executors, "LOST_S", 0.05)
+    monkeypatch.setattr(executors, "_LOOK_S", 0.01)
+    clock_us = count(0, 10_000)
+    monkeypatch.setattr(executors, "monotonic_us", lambda: next(clock_us))
+    client = Lost({"worker": 1}, {}, {"worker": 1}, look)
+    with executors._Workers(client, "tcp://it") as workers:
+        runs = Campaign(tmp_path, {}).play(measured, "it", 1.0, [1, 2, 3], workers)
+        assert next(runs) == 1
+        with pytest.raises(CampaignError, match=re.escape(f"2 of 3 runs failed: seeds 2, 3: {cause}")):
+            list(runs)
+        client.queue.give_up()  # an answer that comes late changes nothing
+        assert str(workers.submit(max, 1, 2).exception(5)) == cause
+    assert len(client.looks) == 1
+
+
+def test_workers_fail_and_lose_calls_as_dask_says() -> None:
+    client = Lost({"worker": 1})
+    with executors._Workers(client, "tcp://it") as workers:
+        played, lost, failed = (workers.submit(max, 1, 2) for _ in range(3))
+        client.queue.futures[1].cancel()
+        client.queue.futures[2].set_exception(ValueError("unlucky"))
+    assert played.result(5) == 2
+    assert str(lost.exception(5)) == "the connection to the cluster was lost"
+    assert str(failed.exception(5)) == "unlucky"
+
+
+def test_library_of_the_cluster_prints_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(executors, "CONNECT_S", 0.1)
+    with pytest.raises(CampaignError), executor_of(1, "tcp://127.0.0.1:9"):
+        pass
+    assert not any(
+        logging.getLogger(name).isEnabledFor(logging.ERROR) for name in ("distributed", "distributed.client")
+    )
+
+
 def test_worker_with_other_code_is_named(launch: Path) -> None:
     module = "tests.fwk.cli.cli_eval_parts"
     modules = {module: hash_of_module(module)}
@@ -63,7 +125,7 @@ def test_worker_keeps_the_code_that_it_used_first(tmp_path: Path, monkeypatch: p
 @patch.dict(os.environ)  # a cluster of this process sets variables for its workers
 def test_two_dask_workers_play_the_seeds(launch: Path) -> None:
     distributed: Any = import_module("distributed")
-    with distributed.Client(n_workers=2, threads_per_worker=1, dashboard_address=None) as client:
+    with distributed.Client(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0") as client:
         address = client.scheduler.address
         assert evaluated(str(launch), "--seeds", "1..4", "--cluster", address)[:2] == (0, "1 2 3 4\n")
         code, _, said = evaluated(str(launch), "--seeds", "12..13", "--cluster", address)
@@ -77,7 +139,7 @@ def test_two_dask_workers_play_the_seeds(launch: Path) -> None:
 def test_cluster_without_workers_is_named(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(executors, "CONNECT_S", 1.0)
     distributed: Any = import_module("distributed")
-    with distributed.Client(n_workers=0, dashboard_address=None) as client:
+    with distributed.Client(n_workers=0, dashboard_address="127.0.0.1:0") as client:
         address = client.scheduler.address
         code, _, said = evaluated(str(launch), "--seeds", "1", "--cluster", address)
     assert (code, f"{address} has no workers; start some with: dask worker {address}" in said) == (1, True)
