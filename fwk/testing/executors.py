@@ -175,8 +175,10 @@ class _Workers(Executor):
 
 
 def _begin(parent: int) -> None:
-    """Prepares a process for runs: Ctrl-C is the parent's."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Prepares a process for runs: Ctrl-C and the end of the terminal are the parent's."""
+    for number in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     die_with_parent(parent)
 
 
@@ -190,8 +192,9 @@ async def _greet(cluster: str) -> None:
 def executor_of(jobs: int, cluster: str = "", limit_s: float | None = None) -> Iterator[Executor]:
     """Yields `jobs` processes of this machine, or the workers of the Dask cluster whose scheduler has an address.
 
-    Ctrl-C ends the processes of this machine at once, and a run that takes longer than the limit ends its process.
-    Runs of a cluster have no limit: nothing ends a worker from outside. Each thread of its workers plays a run.
+    Ctrl-C, or an error of the caller, ends the processes of this machine at once, and a run that takes longer than the
+    limit ends its process. Runs of a cluster have no limit: nothing ends a worker from outside. Each thread of its
+    workers plays a run.
 
     Raises:
         CampaignError: Dask is not installed, there is no scheduler at that address, or it has no worker.
@@ -200,7 +203,7 @@ def executor_of(jobs: int, cluster: str = "", limit_s: float | None = None) -> I
         with Processes(jobs, limit_s) as processes:
             try:
                 yield processes
-            except KeyboardInterrupt:  # runs that have begun, or wait, would be played to their end
+            except BaseException:  # runs that have begun, or wait, would be played to their end
                 processes.kill()
                 raise
         return

@@ -3,6 +3,7 @@
 import hashlib
 import os
 import re
+import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
@@ -122,6 +123,7 @@ def _play(
     label, shown = f"playing {len(left)} of {len(seeds)} runs", sys.stderr.isatty()
     try:
         with (
+            _signals_interrupt(),
             campaign.alone(),
             executor_for(len(left)) as executor,
             typer.progressbar(length=len(left), label=label, file=sys.stderr) as bar,
@@ -139,6 +141,20 @@ def _play(
         typer.echo(f"note: {kept} of {len(seeds)} runs have results; the same command plays the others", err=True)
         raise
     return ""
+
+
+@contextmanager
+def _signals_interrupt() -> Iterator[None]:
+    """Makes SIGTERM and SIGHUP end the command as Ctrl-C does; one that is ignored, as under nohup, stays ignored."""
+    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP)}
+    for number, handler in before.items():
+        if handler is not signal.SIG_IGN:
+            signal.signal(number, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _modules(plan: Plan) -> dict[str, str]:

@@ -3,8 +3,6 @@
 import json
 import math
 import re
-import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Timer
@@ -352,54 +350,3 @@ def test_results_of_former_code_are_named(launch: Path, monkeypatch: pytest.Monk
     (launch.parent / "eval-it" / "seed-1.json").unlink()
     assert f"note: the result of seed 2 is of former code; {cure}\n" in evaluated(*words, "1..3")[2]
     assert "former code" not in evaluated(*words, "1")[2]
-
-
-KILLED = """
-import os, signal
-from fwk.testing.executors import executor_of
-with executor_of(1) as workers:
-    print(workers.submit(os.getpid).result(), flush=True)
-    workers.submit(signal.pause).result()
-"""
-
-
-def test_runs_of_a_killed_evaluation_end_with_it() -> None:
-    with subprocess.Popen([sys.executable, "-c", KILLED], stdout=subprocess.PIPE, text=True) as killed:
-        assert killed.stdout
-        worker = psutil.Process(int(killed.stdout.readline()))
-        killed.kill()
-    worker.wait(10)
-
-
-INTERRUPTED = """
-import os, signal, sys, threading
-from pathlib import Path
-from fwk.testing.campaign import Campaign
-from fwk.testing.executors import executor_of
-signal.signal(signal.SIGINT, signal.default_int_handler)
-def work(file, time_s, seed):
-    return signal.pause() if seed else os.getpid()
-with executor_of(1) as workers:
-    for _ in Campaign(Path(sys.argv[1]), {}).play(work, "it", 1.0, range(8), workers):
-        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
-"""
-
-
-def test_ctrl_c_does_not_wait_for_runs_that_have_begun(tmp_path: Path) -> None:
-    words = [sys.executable, "-c", INTERRUPTED, str(tmp_path)]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=30)
-    assert done.stderr.endswith("KeyboardInterrupt\n")
-    assert "InvalidStateError" not in done.stderr
-    assert not psutil.pid_exists(json.loads((tmp_path / "seed-0.json").read_text()))
-
-
-def test_interrupted_evaluation_says_what_is_left(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    play = Campaign.play
-
-    def interrupted(*words: Any) -> Any:
-        yield next(play(*words))
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(Campaign, "play", interrupted)
-    code, _, said = evaluated(str(launch), "--seeds", "1..3", "--jobs", "1")
-    assert (code, "note: 1 of 3 runs have results; the same command plays the others" in said) == (130, True)
