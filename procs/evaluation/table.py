@@ -3,18 +3,17 @@
 import csv
 import io
 import json
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields
 
 import numpy as np
+from numpy.typing import NDArray
 
 from procs.evaluation.beliefs import AVERAGE, PARTICLES, Samples
+from procs.evaluation.intervals import Interval, difference, never, poisson, widened, wilson
 from procs.model.frames import Floats
 
 _REDRAWS = 1000
-_NEVER = 3.0  # events that were expected at most, with a probability of 95 %, if none was seen
-_Z = 1.96  # of a normal distribution, 95 % lie within so many deviations
 
 
 def rms(samples: Floats) -> float:
@@ -72,6 +71,13 @@ class Measure:
     unit: str
     goal: str
     """The value to reach, in the same unit; empty without one."""
+    rates: tuple[str, str] | None = None
+    """Names of the two measures whose difference it is."""
+
+    @property
+    def possible(self) -> Interval:
+        """Limits of all values: shares are parts of 1, and only ratios may be negative."""
+        return -np.inf if self.statistic is ratio else 0.0, 1.0 if self.unit == "share" else np.inf
 
 
 MEASURES = [
@@ -152,7 +158,7 @@ MEASURES = [
     Measure("goals", rate, "/min", ""),
     Measure("goals of cyan", rate, "/min", ""),
     Measure("goals of magenta", rate, "/min", ""),
-    Measure("goals of cyan less those of magenta", ratio, "/min", ""),
+    Measure("goals of cyan less those of magenta", ratio, "/min", "", ("goals of cyan", "goals of magenta")),
     Measure("won by cyan", share, "share", ""),
     Measure("lost by cyan", share, "share", ""),
 ]
@@ -175,36 +181,53 @@ class Row:
 def rows_of(pieces: Sequence[Samples], measures: Sequence[Measure] = MEASURES, seed: int = 1) -> list[Row]:
     """Computes the table; the interval comes from redrawing whole pieces, as samples of a piece depend on each other.
 
-    A single piece gives no interval: its limits are NaN. The interval of events that were never seen ends at the rate
-    with which seeing none has a probability of 5 %. Trials that all ended alike, or in all pieces equally often, have
-    Wilson's interval, as redrawing gives them none.
+    A single piece gives no interval: its limits are NaN. As few pieces redrawn vary less than pieces do, the interval
+    is widened. The interval of events that were never seen ends at the rate with which seeing none has a probability
+    of 5 %. Where redrawing gives no width, trials have Wilson's interval, as do those that all ended alike, and rates
+    of events, and differences of two, that of Poisson's distribution.
     """
     rng = np.random.default_rng(seed)
     draws = rng.integers(len(pieces), size=(_REDRAWS, len(pieces)))
     rows = []
     for measure in measures:
         samples = [piece[measure.name] for piece in pieces]
-        value, low, high = measure.statistic(np.concatenate(samples)), np.nan, np.nan
-        if len(pieces) > 1:
-            redrawn = [measure.statistic(np.concatenate([samples[index] for index in draw])) for draw in draws]
-            sound = [each for each in redrawn if not np.isnan(each)]
-            if sound:
-                low, high = np.quantile(sound, (0.025, 0.975), method="inverted_cdf").tolist()
-        if measure.statistic is rate and value == 0.0:
-            low, high = 0.0, _NEVER / sum(float(each[:, 1].sum()) for each in samples)
-        count = sum(map(len, samples))
-        if measure.statistic is share and (value in (0.0, 1.0) or low == high):
-            low, high = wilson(round(value * count), count)
+        value, count = measure.statistic(np.concatenate(samples)), sum(map(len, samples))
+        low, high = _interval(measure, value, pieces, draws)
         rows.append(Row(measure.name, value, low, high, count, measure.unit, measure.goal))
     return rows
 
 
-def wilson(successes: int, trials: int) -> tuple[float, float]:
-    """Returns the limits between which the probability of a success lies with 95 % (Wilson's score interval, 1927)."""
-    part, square = successes / trials, _Z**2 / trials
-    middle = (part + square / 2) / (1 + square)
-    half = _Z * math.sqrt(part * (1 - part) / trials + square / (4 * trials)) / (1 + square)
-    return max(0.0, middle - half), min(1.0, middle + half)
+def _interval(measure: Measure, value: float, pieces: Sequence[Samples], draws: NDArray[np.int64]) -> Interval:
+    samples = [piece[measure.name] for piece in pieces]
+    drawn = _redrawn(measure, samples, draws) if len(pieces) > 1 else (np.nan, np.nan)
+    even, counted = drawn[0] == drawn[1], sum(not np.isnan(measure.statistic(each)) for each in samples)
+    if measure.statistic is share and (even or value in (0.0, 1.0)):
+        trials = sum(map(len, samples))
+        return wilson(round(value * trials), trials)
+    if measure.statistic is rate and value == 0.0:
+        return never(_sums(samples)[1])
+    if measure.statistic is rate and even:
+        return poisson(*_sums(samples))
+    if measure.rates and even:
+        (events, time), (others, _) = (_sums([piece[each] for piece in pieces]) for each in measure.rates)
+        return difference(events, others, time) if time else (np.nan, np.nan)
+    return widened(value, drawn, counted, measure.possible) if counted > 1 else (np.nan, np.nan)
+
+
+def _redrawn(measure: Measure, samples: Sequence[Floats], draws: NDArray[np.int64]) -> Interval:
+    """Returns the limits between which 95 % of the values of redrawn pieces lie; NaN if none has a value."""
+    values = [measure.statistic(np.concatenate([samples[index] for index in draw])) for draw in draws]
+    sound = [each for each in values if not np.isnan(each)]
+    if not sound:
+        return np.nan, np.nan
+    low, high = np.quantile(sound, (0.025, 0.975), method="inverted_cdf").tolist()
+    return low, high
+
+
+def _sums(samples: Sequence[Floats]) -> tuple[float, float]:
+    """Returns the sums of both columns."""
+    first, second = np.concatenate(samples).sum(axis=0).tolist()
+    return first, second
 
 
 def as_text(rows: Sequence[Row]) -> str:

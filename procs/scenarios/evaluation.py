@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from fwk.testing.executors import INSTALL
+from procs.evaluation.intervals import wilson
 from procs.evaluation.plots import plot
-from procs.evaluation.table import Row, as_csv, as_json, as_text, wilson
+from procs.evaluation.table import Row, as_csv, as_json, as_text
 from procs.scenarios.file import BOOK
 from procs.scenarios.scenario import outcome, read
 
