@@ -10,7 +10,6 @@ from concurrent.futures import CancelledError, Executor, Future, as_completed
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import lru_cache
-from inspect import signature
 from pathlib import Path
 from typing import Any, cast, overload
 
@@ -57,7 +56,7 @@ class Evaluation:
         """Plays a run and returns its measurements.
 
         Raises:
-            CampaignError: this process has other modules, or the evaluation takes no settings.
+            CampaignError: this process has other modules.
         """
         for folder in self.folders:
             use_types_of(Path(folder))
@@ -68,11 +67,7 @@ class Evaluation:
             more = f" and {len(other) - 1} more" if len(other) > 1 else ""
             cure = "copy the code to its machine if it has a copy of its own, and restart the worker"
             raise CampaignError(f"a worker has other code of {other[0]}{more}; {cure}")
-        if not self.sets:
-            return work(file, time_s, seed)
-        if len(signature(work).parameters) < 4:
-            raise CampaignError(f"{self.use} takes no settings; give it a fourth parameter, 'sets: Sequence[str]'")
-        return work(file, time_s, seed, self.sets)
+        return work(file, time_s, seed, self.sets) if self.sets else work(file, time_s, seed)
 
 
 class Results(Sequence[Any]):

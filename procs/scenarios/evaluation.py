@@ -4,36 +4,68 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from fwk.testing import ExpressionError
 from fwk.testing.executors import INSTALL
 from procs.evaluation.intervals import wilson
 from procs.evaluation.plots import plot
 from procs.evaluation.table import Row, as_csv, as_json, as_text
-from procs.scenarios.file import BOOK
+from procs.scenarios.file import BOOK, Scenario, ScenarioError
 from procs.scenarios.scenario import outcome, read
 
 INPUTS = sorted(BOOK.glob("*.yaml"))
 """Files on which results depend besides modules."""
+OWN_TIME = True
+"""Each scenario states how long it is played."""
 ALL = "all scenarios"
 """Name of the row that counts every scenario."""
 
 
 def played(_file: str, _time_s: float, seed: int) -> dict[str, list[str]]:
-    """Plays every scenario of the book, each with its own system; returns the conditions that do not hold by scenario.
+    """Plays every scenario of the book; returns what `played_in` does.
+
+    Raises:
+        ScenarioError: files are not scenarios.
+    """
+    return played_in(BOOK, seed)
+
+
+def played_in(folder: Path, seed: int) -> dict[str, list[str]]:
+    """Plays every scenario of a folder, each with its own system; returns the conditions that do not hold by scenario.
 
     The `seed` replaces that of each scenario. Each is played to its own limit of time: one that is cut off before
     would count as failed.
+
+    Raises:
+        ScenarioError: there are no files, or some are not scenarios; then none is played.
     """
-    return {path.stem: broken_in(path, seed) for path in sorted(BOOK.glob("*.yaml"))}
+    scenarios, mistakes = {}, []
+    for path in sorted(folder.glob("*.yaml")):
+        try:
+            scenarios[path] = read(path)
+        except ScenarioError as error:
+            mistakes.append(str(error))
+    if not scenarios and not mistakes:
+        mistakes.append(f"{folder}: there are no scenarios, such as pass-is-received.yaml")
+    if mistakes:
+        raise ScenarioError("; ".join(mistakes))
+    return {path.stem: _broken(path, scenario, seed) for path, scenario in scenarios.items()}
 
 
 def broken_in(path: Path, seed: int) -> list[str]:
     """Plays the scenario of a file with a seed; returns the conditions that do not hold.
 
-    A component that fails counts as one: the other scenarios are worth a result.
+    Raises:
+        ScenarioError: the file is not a scenario.
     """
+    return _broken(path, read(path), seed)
+
+
+def _broken(path: Path, scenario: Scenario, seed: int) -> list[str]:
     try:
-        return outcome(read(path).model_copy(update={"seed": seed})).broken
-    except Exception as error:
+        return outcome(scenario.model_copy(update={"seed": seed})).broken
+    except ExpressionError as error:  # a mistake that only the run shows
+        raise ScenarioError(f"{path}: {error}") from error
+    except Exception as error:  # of a component; the other scenarios are worth a result
         return [f"{type(error).__name__}: {error}"]
 
 

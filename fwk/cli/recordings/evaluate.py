@@ -9,8 +9,9 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import AbstractContextManager, contextmanager, suppress
 from importlib import import_module
+from inspect import signature
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 import typer
 
@@ -19,20 +20,36 @@ from fwk.cli.output import BAD_INPUT, FAILED
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.model.errors import PlanError
 from fwk.model.plan import Plan
+from fwk.plan.classes import find_object
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.what_ran import imported_modules
 from fwk.testing.campaign import Campaign, Evaluation, FolderError, listed
 from fwk.testing.executors import CampaignError, executor_of
 
 _MOST = 100_000  # seeds: what is known of each is kept in memory
+_RUN_S = 25.0
+
+
+def _folder(text: str) -> Path:
+    """Returns the path of a folder.
+
+    Raises:
+        BadParameter: the text is empty.
+    """
+    if not text.strip():
+        raise typer.BadParameter(f"'{text}' names no folder; leave out --out, or use . for this folder")
+    return Path(text)
 
 
 def eval(  # noqa: A001 - the name of the command
     file: Annotated[str, typer.Argument(metavar="FILE", help="launch file that names an 'evaluation'")],
     seeds: Annotated[str, typer.Option(metavar="FIRST..LAST", help="a run is played with each seed")] = "1..4",
     time_s: Annotated[
-        float, typer.Option("--time", parser=seconds, metavar="SECONDS", help="logical time of each run")
-    ] = 25.0,
+        float | None,
+        typer.Option(
+            "--time", parser=seconds, metavar="SECONDS", help=f"logical time of each run; by default {_RUN_S:g}"
+        ),
+    ] = None,
     jobs: Annotated[int, typer.Option(min=0, help="runs at the same time on this machine; 0: one a processor")] = 0,
     limit_s: Annotated[
         float | None,
@@ -45,7 +62,8 @@ def eval(  # noqa: A001 - the name of the command
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="override a setting; repeatable")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="FOLDER", help="results; by default eval-NAME")
+        Path | None,
+        typer.Option("--out", "-o", parser=_folder, metavar="FOLDER", help="results; by default eval-NAME"),
     ] = None,
 ) -> None:
     """Plays a launch file with many seeds and measures it; an interrupted evaluation goes on where it was.
@@ -56,22 +74,24 @@ def eval(  # noqa: A001 - the name of the command
 
     Exit codes: 0 measured; 1 a run failed, or there is no cluster; 2 bad input, or a folder that cannot hold results.
     """
-    if cluster and (limit_s is not None or jobs):
-        cause = "nothing ends runs on a cluster; leave out --limit, or --cluster"
-        if limit_s is None:
-            cause = "the workers of a cluster play as many runs as they have threads; leave out --jobs, or --cluster"
-        typer.echo(f"error: {cause}", err=True)
-        raise typer.Exit(BAD_INPUT)
+    if cluster and limit_s is not None:
+        raise _bad_input("nothing ends runs on a cluster; leave out --limit, or --cluster")
+    if cluster and jobs:
+        raise _bad_input(
+            "the workers of a cluster play as many runs as they have threads; leave out --jobs, or --cluster"
+        )
     try:
         plan = load_plan(file, LaunchOptions(sets=sets or ()))
     except PlanError as error:
         typer.echo(str(error), err=True)
         raise typer.Exit(BAD_INPUT) from error
     if not plan.evaluation:
-        typer.echo(f"error: {file} names no 'evaluation: module:function'", err=True)
-        raise typer.Exit(BAD_INPUT)
+        raise _bad_input(f"{file} names no 'evaluation: module:function'")
     use_folders(plan.folders)
     numbers, folder, modules = _numbers(seeds), out or Path(f"eval-{plan.name}"), _modules(plan)
+    if cause := _refusal(plan, sets or (), time_s):
+        raise _bad_input(cause)
+    time_s = _RUN_S if time_s is None else time_s
     about = {"file": plan.file, "time_s": time_s, "by": plan.evaluation, "plan": _digest(plan)}
     work = Evaluation(plan.evaluation, plan.folders, tuple(sets or ()), modules if cluster else {})
     try:
@@ -98,6 +118,22 @@ def eval(  # noqa: A001 - the name of the command
     if failure:
         typer.echo(f"error: {failure}", err=True)
         raise typer.Exit(FAILED)
+
+
+def _bad_input(cause: str) -> typer.Exit:
+    typer.echo(f"error: {cause}", err=True)
+    return typer.Exit(BAD_INPUT)
+
+
+def _refusal(plan: Plan, sets: Sequence[str], time_s: float | None) -> str:
+    """Returns why the plan's evaluation does not take the settings or the time that were typed, or an empty text."""
+    work = cast(Callable[..., Any], find_object(plan.evaluation, plan.folders))
+    if sets and len(signature(work).parameters) < 4:
+        cure = "leave out --set, or give it a fourth parameter, 'sets: Sequence[str]'"
+        return f"{plan.evaluation} takes no settings; {cure}"
+    if time_s is not None and getattr(import_module(plan.evaluation.partition(":")[0]), "OWN_TIME", False):
+        return f"{plan.evaluation} plays each run for a time of its own; leave out --time"
+    return ""
 
 
 def _play(

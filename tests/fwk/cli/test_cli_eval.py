@@ -124,11 +124,26 @@ def test_mistake_in_an_overridden_setting_is_named(launch: Path) -> None:
     assert (code, "it/idle" in said, "speed" in said) == (2, True, True)
 
 
-def test_evaluation_that_takes_no_settings_is_named(launch: Path) -> None:
+def test_evaluation_that_takes_no_settings_refuses_them(launch: Path) -> None:
     launch.write_text(LAUNCH.replace("parts:measured", "parts:without_settings"))
     assert evaluated(str(launch), "--seeds", "1", "--jobs", "1")[0] == 0
     code, _, said = evaluated(str(launch), "--seeds", "1", "--jobs", "1", "--set", "period_s=0.1", "-o", "other")
-    assert (code, "without_settings takes no settings; give it a fourth parameter" in said) == (1, True)
+    assert (code, "without_settings takes no settings; leave out --set, or give it a fourth" in said) == (2, True)
+    assert not (launch.parent / "other").exists()
+
+
+def test_evaluation_with_a_time_of_its_own_refuses_time(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cli_eval_parts, "OWN_TIME", True, raising=False)
+    code, _, said = evaluated(str(launch), "--seeds", "1", "--jobs", "1", "--time", "25")
+    assert (code, "parts:measured plays each run for a time of its own; leave out --time" in said) == (2, True)
+    assert evaluated(str(launch), "--seeds", "1", "--jobs", "1")[:2] == (0, "1\n")
+
+
+@pytest.mark.parametrize("name", ["", " "])
+def test_folder_without_a_name_is_refused(launch: Path, name: str) -> None:
+    code, _, said = evaluated(str(launch), "--seeds", "1", "--jobs", "1", "--out", name)
+    assert (code, f"'{name}' names no folder; leave out --out" in said.replace("\n", " ")) == (2, True)
+    assert list(launch.parent.iterdir()) == [launch]
 
 
 DAMAGES = [b"", b'{"seed": 1', b"{}", b"\xff\xfe\x00", b"[" * 99_999]

@@ -329,6 +329,24 @@ def test_evaluation_of_the_book_counts_seeds(tmp_path: Path, monkeypatch: pytest
     assert sorted(file.name for file in out.iterdir()) == ["measures.png", "table.csv", "table.json"]
 
 
+def test_evaluation_names_mistakes_before_it_plays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(ScenarioError, match="there are no scenarios"):
+        evaluation.played_in(tmp_path, 1)
+    written(tmp_path, "dummies: [cyan2]\nalways: [x(cyan2) < 0]\ntime_s: 0.3\n")
+    assert evaluation.played_in(tmp_path, 1) == {"mine": []}
+    (tmp_path / "bad.yaml").write_text("robot: [cyan2]\n")
+    (tmp_path / "worse.yaml").write_text("- cyan2\n")
+    monkeypatch.setattr(evaluation, "outcome", pytest.fail)
+    with pytest.raises(ScenarioError, match=r"bad.yaml: no key 'robot'; .*; .*worse.yaml: holds no keys"):
+        evaluation.played_in(tmp_path, 1)
+
+
+def test_evaluation_names_a_mistake_that_the_run_shows(tmp_path: Path) -> None:
+    path = written(tmp_path, "dummies: [cyan2]\nalways: [\"touching[0] == 'cyan2'\"]\ntime_s: 0.2\n")
+    with pytest.raises(ScenarioError, match=re.escape(f"{path}: 'touching[0] == 'cyan2'': an index is beyond")):
+        evaluation.played_in(tmp_path, 1)
+
+
 @pytest.mark.parametrize("result", [[1], 3, {"mine": 1}, {"mine": "never"}, {"mine": [1]}, {"mine": None}])
 def test_result_that_is_none_of_scenarios_is_named(result: object) -> None:
     assert evaluation.flaw_in(result) == "it should hold a list of texts for each scenario"
