@@ -10,7 +10,7 @@ from procs.evaluation.table import Row
 
 
 def plot(rows: Sequence[Row], file: Path) -> None:
-    """Draws the measures that have a finite value, a panel for each unit, as PNG.
+    """Draws the measures that have a finite value, with the finite limits, a panel for each unit, as PNG.
 
     Raises:
         ImportError: matplotlib is not installed.

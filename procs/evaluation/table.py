@@ -5,6 +5,7 @@ import io
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -243,21 +244,25 @@ def as_text(rows: Sequence[Row]) -> str:
 
 
 def as_csv(rows: Sequence[Row]) -> str:
-    """Returns the table for spreadsheets; the first line names the columns."""
+    """Returns the table for spreadsheets; the first line names the columns, infinity is `inf`, no number empty."""
     text = io.StringIO()
     writer = csv.DictWriter(text, [each.name for each in fields(Row)], lineterminator="\n")
     writer.writeheader()
-    writer.writerows({key: "" if value != value else value for key, value in asdict(row).items()} for row in rows)
+    writer.writerows({key: "" if value is None else value for key, value in each.items()} for each in _plain(rows))
     return text.getvalue()
 
 
 def as_json(rows: Sequence[Row]) -> str:
-    """Returns the table for programs; values that are infinite or no number are null, as JSON has neither."""
-    plain = [
-        {
-            key: None if isinstance(value, float) and not np.isfinite(value) else value
-            for key, value in asdict(row).items()
-        }
-        for row in rows
-    ]
-    return json.dumps(plain, indent=1, allow_nan=False)
+    """Returns the table for programs; JSON has no infinity, which is the text "inf"; no number is null."""
+    return json.dumps(_plain(rows), indent=1, allow_nan=False)
+
+
+def _plain(rows: Sequence[Row]) -> list[dict[str, Any]]:
+    """Returns the rows with values that files can hold: infinity as text, and None for no number."""
+    return [{key: _told(value) for key, value in asdict(row).items()} for row in rows]
+
+
+def _told(value: Any) -> Any:
+    if not isinstance(value, float) or np.isfinite(value):
+        return value
+    return None if np.isnan(value) else str(value)

@@ -1,5 +1,7 @@
 """Statistics and intervals of the table."""
 
+import csv
+import io
 import json
 import math
 from collections.abc import Callable
@@ -9,6 +11,8 @@ import pytest
 
 from procs.evaluation.table import (
     Measure,
+    Row,
+    as_csv,
     as_json,
     as_text,
     mean,
@@ -82,9 +86,14 @@ def test_interval_of_an_event_never_seen_ends_above_zero() -> None:
     assert row.value == pytest.approx(0.2)
 
 
-def test_infinite_value_stays_valid_json() -> None:
-    rows = rows_of([{"delay": np.full(3, np.inf)}], [Measure("delay", median, "s", "<= 1")])
-    assert json.loads(as_json(rows), parse_constant=pytest.fail)[0]["value"] is None
+def test_json_and_csv_agree_on_what_is_no_number() -> None:
+    pieces = [{"delay": np.full(3, np.inf)}, {"delay": np.full(3, 0.1)}, {"delay": np.full(3, np.inf)}]
+    rows = [*rows_of(pieces, [Measure("delay", median, "s", "<= 1")]), Row("alone", -np.inf, np.nan, np.nan, 1, "", "")]
+    plain = json.loads(as_json(rows), parse_constant=pytest.fail)
+    table = list(csv.DictReader(io.StringIO(as_csv(rows))))
+    assert [(row["value"], row["low"], row["high"]) for row in plain] == [("inf", 0.1, "inf"), ("-inf", None, None)]
+    assert [(row["value"], row["low"], row["high"]) for row in table] == [("inf", "0.1", "inf"), ("-inf", "", "")]
+    assert float(plain[0]["value"]) == math.inf
 
 
 def test_trials_that_all_ended_alike_have_an_interval() -> None:
