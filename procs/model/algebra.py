@@ -1,9 +1,11 @@
-"""Matrix products with the same last bits everywhere: BLAS, behind `@`, picks other kernels on other processors."""
+"""Array operations whose last bits are the same on every machine; BLAS, behind `@`, picks kernels by the processor."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Indices = NDArray[np.intp]
 
 
 def product(rows: Floats, matrix: Floats) -> Floats:
@@ -20,6 +22,6 @@ def weighted_mean(values: Floats, weights: Floats) -> float:
 
 
 def median(values: Floats) -> float:
-    """Returns the median of values (n); that of NumPy takes four times as long for few values."""
+    """Returns the median of values (n); for few values, NumPy's own takes four times as long."""
     ordered, half = np.sort(values), len(values) // 2
     return float(ordered[half] if len(values) % 2 else (ordered[half - 1] + ordered[half]) / 2)

@@ -17,7 +17,7 @@ class BallModel(BaseModel):
     rolling_m_s2: float = Field(default=0.4, gt=0.0, le=100.0)
     """Deceleration in m/s² of the rolling ball. Small size league: 0.26 to 0.5; none is published for this league."""
     bounce: float = Field(default=0.6, ge=0.0, le=1.0)
-    """Share of the vertical speed after a bounce on carpet. FIFA: at least 0.82 on steel; carpet takes some."""
+    """Share of the vertical speed that a bounce on carpet leaves. FIFA: at least 0.82 on steel; carpet absorbs more."""
     least_rebound_m_s: float = Field(default=0.5, ge=0.0, le=100.0)
     """Vertical speed below which the ball stays on the ground instead of bouncing. An estimate."""
     spin_s: float = Field(default=0.5, gt=0.0, le=1000.0)

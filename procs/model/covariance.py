@@ -1,16 +1,16 @@
-"""Covariances of measurements: a message may state a matrix that is no covariance."""
+"""Checks the covariances that messages state: not every matrix is a covariance."""
 
 from collections.abc import Sequence
 
 from procs.model.geometry import plausible
 
-_ROUNDING = 1e-6  # relative error of products of matrices, generously
+_ROUNDING = 1e-6  # relative error that is tolerated; well above the rounding errors of matrix products
 
 
 def is_covariance(matrix: Sequence[Sequence[float]]) -> bool:
-    """Returns whether a matrix (2, 2) or (3, 3) is plausible, symmetric, and negative in no direction.
+    """Returns whether a matrix (2, 2) or (3, 3) is symmetric and positive semidefinite, with plausible values.
 
-    Filters that took another matrix for a covariance would end in NaN, and stay there.
+    A filter that used any other matrix as a covariance would end in NaN, and stay there.
     """
     for i in range(len(matrix)):
         if not (plausible(*matrix[i]) and matrix[i][i] >= 0.0):

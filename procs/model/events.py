@@ -20,7 +20,12 @@ class Event(NamedTuple):
 
     kind: Kind
     robot: str
+    """Name of the robot that touched or kicked the ball, of the last one that touched it before a goal or an out, or of
+    the faster one in a collision."""
     other: str
+    """Name of the slower robot in a collision; otherwise empty."""
     x_m: float
+    """Place of the ball, or of the collision, world frame."""
     y_m: float
     speed_m_s: float
+    """Speed of the ball, or the closing speed of a collision."""

@@ -23,23 +23,23 @@ class ExpectedErrors(BaseModel):
     frame_rad: NonNegativeFloat = 0.002
     """The same of a heading."""
     frame_s: NonNegativeFloat = 0.02
-    """Growth of `frame_m` with each m/s of the robot, whose mirror shakes the more."""
+    """Growth of `frame_m` for each m/s of the robot, because the mirror of a faster robot shakes more."""
     frame_rad_s_m: NonNegativeFloat = 0.001
-    """Growth of `frame_rad` with each m/s of the robot."""
+    """Growth of `frame_rad` for each m/s of the robot."""
     lasting_m: NonNegativeFloat = 0.0
-    """A position: the part of its error that is the same in all frames, as with a tilted mirror; frames do not average
-    it out."""
+    """A position: the part of its error that is the same in all frames, such as that of a tilted mirror; averaging
+    frames does not remove it."""
     lasting_rad: NonNegativeFloat = 0.0
     """The same of a heading."""
     wheel_scale_sd: NonNegativeFloat = 0.03
-    """Relative error of each wheel's speed that stays the same for long, as that of a worn wheel."""
+    """Relative error of each wheel's speed that stays the same for a long time, such as that of a worn wheel."""
     wheel_noise_sqrt_s: NonNegativeFloat = 0.0112
-    """Relative error of the way that a wheel measures in one second."""
+    """Relative error of the distance that a wheel measures in one second."""
 
     def in_coarser_picture(self, factor: float) -> "ExpectedErrors":
-        """Returns the errors if a pixel covers so many times the ground that it usually does.
+        """Returns the errors for a picture in which a pixel covers `factor` times as many metres as usual.
 
-        Those in pixels stay as they are, and those that last come from the tilt of the mirror.
+        Errors in pixels stay as they are. So do the lasting ones, which come from the tilt of the mirror.
         """
         grown = ("frame_m", "frame_rad", "frame_s", "frame_rad_s_m")
         return self.model_copy(update={name: factor * getattr(self, name) for name in grown})

@@ -36,7 +36,7 @@ _LIMITS: dict[str, tuple[tuple[str, float], ...]] = {
     "goal_depth_m": (("border_m", 1.0),),
     "post_diameter_m": (("goal_width_m", 0.5),),
 }
-"""Measure to the larger ones, stated before it, of which it is a share at most."""
+"""Measure to upper limits: pairs of another measure, declared before it, and the largest allowed share of that."""
 
 
 class Point(NamedTuple):

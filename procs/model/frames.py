@@ -1,13 +1,12 @@
-"""Angles, and points with their uncertainty taken from the robot's frame to the world's."""
+"""Rotations, and the transformation of points with their uncertainty from the robot frame to the world frame."""
 
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Indices = NDArray[np.intp]
+from procs.model.algebra import Flags, Floats, Indices
+
+__all__ = ["Flags", "Floats", "Indices", "rotation", "to_world"]
 
 
 def rotation(angle_rad: float) -> Floats:
@@ -19,10 +18,10 @@ def rotation(angle_rad: float) -> Floats:
 def to_world(
     pose: Floats, pose_covariance: Floats, points_m: Floats, covariances_m2: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Takes points (n, 2) that a robot sees to the world frame, with their covariances (n, 2, 2) in two parts.
+    """Transforms points (n, 2) that a robot sees to the world frame, with their covariances (n, 2, 2) in two parts.
 
-    The first part comes from the sight itself and is new in each frame, the second from the robot's own pose,
-    whose error stays for a while and is shared by everything that the robot sees.
+    The first part comes from the sight itself and is independent from frame to frame. The second comes from the robot's
+    own pose, whose error lasts for a while and is shared by everything that the robot sees.
 
     Args:
         pose: x, y (m) and heading (rad) of the robot.

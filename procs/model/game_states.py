@@ -34,7 +34,7 @@ def is_free(state: State, stopped: bool) -> bool:
 
 
 def state_of(number: int) -> State:
-    """Returns the state of a message; FROZEN, in which no robot moves, for a number that is none."""
+    """Returns the state with a number from a message; FROZEN, in which no robot moves, for an unknown number."""
     return _STATES.get(number, State.FROZEN)
 
 

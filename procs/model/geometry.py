@@ -5,7 +5,7 @@ import math
 from procs.model.field import Point
 
 BOUND = 1e4
-"""Bound of the values of measurements, in m, rad, m/s and so on."""
+"""Measurements are smaller than this in magnitude, in m, rad, m/s and other SI units."""
 
 
 def wrap_rad(angle_rad: float) -> float:

@@ -1,4 +1,4 @@
-"""The nearest of many things: longer lists than a robot can have seen would take the time of a tick."""
+"""Keeps the nearest of many things: processing more than a robot can have seen would take longer than a tick."""
 
 import math
 from collections.abc import Sequence

@@ -34,7 +34,7 @@ class RobotModel(BaseModel):
     wheel_limit_m_s: float = Field(default=3.5, gt=0.0, le=20.0)
     """Highest rim speed of the wheels, in m/s."""
     kick_limit_m_s: float = Field(default=12.0, gt=1.0, le=20.0)
-    """Highest speed of a kicked ball, in m/s, whatever its elevation. MRA takes up to 12 m/s for plausible."""
+    """Highest speed of a kicked ball, in m/s, at any elevation. MRA considers up to 12 m/s plausible."""
     mouth_half_angle_deg: float = Field(default=30.0, gt=0.0, lt=90.0)
     """The front is cut off between these angles to the left and the right of forward."""
 
@@ -54,7 +54,7 @@ class RobotModel(BaseModel):
         return self.mouth_m + ball.radius_m
 
     def kicked_m_s(self, speed_m_s: float, elevation_rad: float) -> float:
-        """Returns the speed over the ground of a kick that was asked for: a steep one is slower than the limit."""
+        """Returns the horizontal speed in m/s that a requested kick gets; `kick_limit_m_s` limits the total speed."""
         return min(speed_m_s, self.kick_limit_m_s * math.cos(elevation_rad))
 
 

@@ -1,4 +1,4 @@
-"""Reads speeds of wheels from messages, whose number of wheels may be another one than the robot's."""
+"""Reads wheel speeds from messages, which may state a different number of wheels than the robot has."""
 
 from collections.abc import Callable, Sequence
 
@@ -6,15 +6,15 @@ from procs.model.kinematics import WHEEL_ANGLES_DEG, Wheels
 
 
 class WheelReader:
-    """Reads the wheels of one channel; complains about each wrong number of wheels once, not in every tick."""
+    """Reads the wheels of one channel; reports each wrong number of wheels once, not in every tick."""
 
     def __init__(self, channel: str, consequence: str, complain: Callable[[str], None]) -> None:
-        """Begins without a complaint.
+        """Begins without a report.
 
         Args:
-            channel: its name, for complaints.
-            consequence: what happens because of a message that is not read, such as "ignored".
-            complain: takes the sentence.
+            channel: name of the channel, for the report.
+            consequence: what happens to a message with a wrong number of wheels, such as "ignored".
+            complain: takes the text of the report.
         """
         self._channel = channel
         self._consequence = consequence
