@@ -1,7 +1,7 @@
-"""Finds the ball in an omnidirectional picture: colour, shape, then its place to a part of a pixel.
+"""Finds the ball in an omnidirectional picture: colour, shape, then its place to a fraction of a pixel.
 
-A ball on the ground has one size at each place of the picture. A larger one is nearer than it seems: it is in the air,
-at the distance that its size tells.
+The place in the picture determines the size of a ball on the ground. A ball that looks larger is in the air, nearer
+than the ground behind it; its size gives its distance.
 """
 
 import math
@@ -17,18 +17,20 @@ from procs.vision.mirror import Mirror
 from procs.vision.uncertainty import ground_covariance, sphere_covariance
 
 _STEP_PX = 2  # the first search looks at every second pixel of every second row
-_CANDIDATES = 4  # largest blobs, which are looked at
+_MARGIN_PX = 2  # around a blob of the first search, so that the full picture shows its rim
+_CANDIDATES = 4  # so many blobs, the largest ones, are examined
 _LEAST_SOLID = 0.5  # of a blob's area must be of the ball's colour; the rest is its rim
-_MOST_SPREAD = 1.6  # mean square distance of a blob's pixels from its middle, compared with a disc's
+_MOST_SPREAD = 1.6  # mean square distance of a blob's pixels from its middle, as a multiple of a disc's
 _WHOLE_SPREAD = 1.02  # the same of a whole ball in a picture
 _SPREAD_PX2 = 2.0  # what noise adds to that at most, times the square of the radius in the picture
+_FULL_FIT = 0.1  # share of a ball's area that noise alone may take away
 _HIDDEN_SHARE = 2.6
 """Relative error of the area of a ball that a robot hides in part, divided by what that adds to its spread."""
-_LEAST_WARMTH = 30.0  # red minus blue of a ball that is told from its surroundings by that
-_FAINT = 0.15  # pixels covered by the ball to a smaller part than this count as noise
+_LEAST_WARMTH = 30.0  # red minus blue, in levels of 255, above which this difference separates a ball from the rest
+_FAINT = 0.15  # share of a pixel; a pixel of which the ball covers less counts as noise
 _AREA_PX = 0.2  # relative deviation of an area, times the radius in the picture
-_NEAREST_M = 0.3  # from the viewpoint: nearer is nothing but the robot itself
-IN_THE_AIR = 0.8  # confidence of a ball that flies, as few do
+_NEAREST_M = 0.3  # from the viewpoint; only the robot itself is nearer
+IN_THE_AIR = 0.8  # confidence of a ball in the air, which is rarer than one on the ground
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ def most_fit(radius_px: float) -> float:
 
 
 def seems_whole(spread: float, radius_px: float) -> bool:
-    """Returns whether no robot seems to hide a part of a ball, so that its size tells its distance.
+    """Returns whether a blob seems to show a whole ball, of which no robot hides a part, so that its size is known.
 
     Args:
         spread: mean square distance of the blob's pixels from its middle, compared with that of a disc of its area.
@@ -87,7 +89,7 @@ class BallFinder:
     deviation_px: float = 0.3
     """Standard deviation of the found centre."""
     least_fit: float = 0.4
-    """Least ratio of the areas of blob and ball, of which robots may hide a part; smaller blobs are not balls."""
+    """Least area of a blob, as a share of a whole ball's: robots may hide a part, but smaller blobs are not balls."""
     farthest_m: float = 8.0
     """Largest distance of a ball."""
 
@@ -112,7 +114,8 @@ class BallFinder:
     def _blob(self, pixels: Picture, box: cv2.typing.MatLike) -> _Blob | None:
         """Measures a blob of the coarse picture in the full one."""
         left, top, width, height = (int(edge) * _STEP_PX for edge in box[: cv2.CC_STAT_AREA])
-        left, top, right, bottom = max(left - 2, 0), max(top - 2, 0), left + width + 2, top + height + 2
+        right, bottom = left + width + _MARGIN_PX, top + height + _MARGIN_PX
+        left, top = max(left - _MARGIN_PX, 0), max(top - _MARGIN_PX, 0)
         window = pixels[top:bottom, left:right]
         solid = self.colour.mask(to_hsv(window))
         cover = _cover(window, solid)
@@ -143,8 +146,8 @@ class BallFinder:
         confidence = min(fit, 1 / fit)
         if math.hypot(x_m, y_m) > self.farthest_m or confidence < self.least_fit or not _is_round(blob, expected_px):
             return None
-        # What is hidden shifts the centre by up to as much of the radius.
-        deviation_px = self.deviation_px + expected_px * max(1.0 - fit - 0.1, 0.0) / 2
+        # A hidden share of the area shifts the centre by up to the same share of the radius; half of that is expected.
+        deviation_px = self.deviation_px + expected_px * max(1.0 - fit - _FULL_FIT, 0.0) / 2
         return BallSighting(x_m, y_m, 0.0, ground_covariance(self.mirror, x_m, y_m, deviation_px), confidence)
 
     def _in_the_air(self, blob: _Blob) -> BallSighting | None:
@@ -161,7 +164,7 @@ class BallFinder:
         return BallSighting(x_m, y_m, max(0.0, z_m - self.radius_m), covariance_m2, IN_THE_AIR)
 
     def _locate(self, column: float, row: float) -> tuple[float, float, float] | None:
-        """Returns the ball on the ground whose circle has that centre: x, y in metres, radius in pixels."""
+        """Returns the ball on the ground whose circle has this centre: x, y (m), radius (px); None for the sky."""
         wanted = np.array([column, row])
         looked_at = wanted
         for _ in range(2):  # the centre of the circle is not quite where the ball's centre appears
@@ -175,15 +178,15 @@ class BallFinder:
 
 
 def _is_round(blob: _Blob, radius_px: float) -> bool:
-    """Returns whether a blob spreads no further than a disc of a radius."""
+    """Returns whether a blob is as compact as a disc of this radius, apart from noise."""
     return blob.spread_px2 <= _MOST_SPREAD * radius_px**2 / 2
 
 
 def _cover(window: Picture, solid: Mask) -> Floats:
-    """Returns the share of each pixel, 0..1, that the ball covers; `solid` marks those of its colour.
+    """Returns the share of each pixel, 0..1, that the ball covers; `solid` marks the pixels of its colour.
 
-    Carpet, lines, robots and orange differ in many ways, but red minus blue is next to nothing in all but orange. Of a
-    ball of another colour, pixels count wholly or not at all.
+    For an orange ball, red minus blue measures the share: this difference is close to 0 on carpet, lines and robots.
+    For a ball of another colour, a pixel counts wholly or not at all.
     """
     warmth: Floats = window[..., 2].astype(np.float64) - window[..., 0]
     full = median(warmth[solid])

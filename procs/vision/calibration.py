@@ -46,7 +46,7 @@ class MirrorConfig(Config):
 
 
 def below_mirror(ball: BallModel, info: ValidationInfo) -> BallModel:
-    """Refuses a setting `ball` that reaches up to the mirror, which has been checked before."""
+    """Refuses a setting `ball` that reaches up to the mirror; the setting `mirror` has been checked before."""
     mirror: MirrorConfig | None = info.data.get("mirror")
     if mirror is not None and 2 * ball.radius_m >= mirror.height_m:
         raise ValueError(

@@ -24,7 +24,7 @@ FLOOR: Bgr = (124, 120, 112)
 
 _Level = Annotated[int, Field(ge=0, le=255)]
 Hsv = tuple[Annotated[int, Field(ge=0, le=179)], _Level, _Level]
-"""Hue 0..179 (half degrees), saturation and value 0..255, as OpenCV has them."""
+"""Hue 0..179 (half degrees), saturation and value 0..255, as OpenCV defines them."""
 
 
 class ColourRange(NamedTuple):
@@ -34,14 +34,14 @@ class ColourRange(NamedTuple):
     high: Hsv
 
     def mask(self, hsv: Picture) -> Mask:
-        """Returns a mask of the pixels of that colour, of a picture in HSV, height x width x 3."""
+        """Returns a mask (height x width) of the pixels of this colour in a picture in HSV (height x width x 3)."""
         if not hsv.size:
             return np.zeros(hsv.shape[:2], bool)
         return np.asarray(cv2.inRange(hsv, np.array(self.low), np.array(self.high)) > 0)
 
 
 def to_hsv(pixels: Picture) -> Picture:
-    """Returns the picture as hue, saturation and value; it may have no pixels."""
+    """Returns the picture in hue, saturation and value; it may have no pixels."""
     if not pixels.size:
         return pixels
     return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2HSV), np.uint8)

@@ -19,7 +19,7 @@ class DetectorConfig(Config):
     realism: Realism = "realistic"
     """Errors of the camera that covariances allow for: none, friendly, realistic or harsh."""
     latency_s: float = Field(default=0.0, ge=0.0, le=1.0)
-    """From the exposure of a frame until its camera publishes it, for cameras that do not state the exposure."""
+    """Time from the exposure of a frame until its camera publishes it, for cameras that do not state the exposure."""
 
 
 class Detector(Component, ABC):

@@ -3,26 +3,25 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from procs.model.algebra import Floats
+from procs.model.algebra import Floats, Indices
 from procs.vision.colours import ColourRange, Mask, Picture
 from procs.vision.scan import Scan, runs
 
 _BESIDE = np.array([1, 2, 3])  # samples looked at on both sides of the white ...
-_GREEN_BESIDE = 2  # ... and how many of them must be green: at a real camera's edges one is of neither colour
+_GREEN_BESIDE = 2  # ... and how many of them must be green: at an edge, a real camera shows one of a mixed colour
 
 
 @dataclass(frozen=True)
 class LineFinder:
-    """Finds green-white-green transitions, the line points of Fawkes' and the Tribots' localization."""
+    """Finds green-white-green transitions, as Fawkes and the Tribots do for their localization."""
 
     green: ColourRange
     white: ColourRange
     widest_m: float = 0.4
-    """A longer way over white is not a crossing of a line."""
+    """A longer stretch of white is not a crossing of a line."""
     narrowest_m: float = 0.05
-    """A shorter way over white is a speck, unless pixels are too coarse there to tell."""
+    """A shorter stretch of white is a speck, unless the pixels there are too coarse to tell."""
 
     def find(self, hsv: Picture, scan: Scan) -> Floats:
         """Returns the points (n, 2) on white lines, robot frame, from a scan (lines, samples, 3) in HSV.
@@ -41,7 +40,8 @@ class LineFinder:
         return np.asarray((inner[found] + outer[found]) / 2)
 
 
-def _count(mask: Mask, lines: NDArray[np.intp], samples: NDArray[np.intp]) -> NDArray[np.intp]:
+def _count(mask: Mask, lines: Indices, samples: Indices) -> Indices:
+    """Returns how many of the `samples` (n, k) on the scan lines (n) a mask (lines, samples) marks."""
     inside = (samples >= 0) & (samples < mask.shape[1])
-    green = mask[lines[:, None], samples.clip(0, mask.shape[1] - 1)] & inside
-    return np.asarray(green.sum(axis=1))
+    marked = mask[lines[:, None], samples.clip(0, mask.shape[1] - 1)] & inside
+    return np.asarray(marked.sum(axis=1))

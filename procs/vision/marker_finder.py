@@ -1,4 +1,4 @@
-"""Tells the teams of robots apart by the colour of their markers."""
+"""Recognizes the teams of robots by the colour of their markers."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class MarkerFinder:
 
     mirror: Mirror
     colours: tuple[ColourRange, ...]
-    """Colour of the markers of each team."""
+    """Colour of the markers of each team, in the order of the teams' numbers."""
     radius_m: float = ROBOT.radius_m
     marker_m: tuple[float, float] = ROBOT.marker_m
     """Heights of the lower and the upper edge of the markers."""

@@ -17,7 +17,7 @@ import numpy as np
 
 from procs.model.algebra import Floats, product
 
-_LEAST = 1e-9  # instead of 0 as a divisor
+_LEAST = 1e-9  # smallest divisor
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Mirror:
         return self._pixels(rays[:, :2] / spread[:, None])
 
     def sphere(self, centre_m: tuple[float, float, float], radius_m: float) -> tuple[float, float, float]:
-        """Returns column, row and radius in pixels of the circle as which a sphere appears.
+        """Returns column, row and radius in pixels of the circle that a sphere forms in the picture.
 
         A sphere straight above the viewpoint is outside the circle; the radius is negative then. One around the
         viewpoint, level with it, is seen everywhere; the circle is huge then.
@@ -97,7 +97,7 @@ class Mirror:
         squares = np.sum(offsets * offsets, axis=1)
         mirror_rays = np.column_stack((2.0 * offsets, squares - 1.0))
         rays = product(mirror_rays, self._from_mirror.T)
-        down = np.where(rays[:, 2] < -1e-9, -rays[:, 2], np.nan)
+        down = np.where(rays[:, 2] < -_LEAST, -rays[:, 2], np.nan)
         return np.asarray(rays[:, :2] * ((self.height_m - plane_m) / down)[:, None])
 
     def radius_px(self, distance_m: float) -> float:

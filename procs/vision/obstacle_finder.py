@@ -1,4 +1,4 @@
-"""Finds robots: black that stands on the carpet, seen from its near edge."""
+"""Finds robots: black bodies on the carpet, located by their near edges."""
 
 import math
 from collections.abc import Iterator
@@ -8,9 +8,8 @@ from operator import and_, or_
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from procs.model.algebra import Floats, median
+from procs.model.algebra import Floats, Indices, median
 from procs.model.robot import ROBOT
 from procs.vision.colours import ColourRange, Mask, Picture
 from procs.vision.mirror import Mirror
@@ -18,12 +17,13 @@ from procs.vision.scan import Scan
 from procs.vision.uncertainty import ground_covariance
 
 _BODY_SAMPLES = 4  # so many black samples in a row are a body
-_COVERED = 0.75  # share of rays that are black from their beginning: a covered camera, not robots all around
-_BETWEEN_RAYS = 0.23  # standard deviation of a middle across the ray, as a part of the way between two rays
+_COVERED = 0.75  # if a larger share of the rays begins black, the camera is covered
+_BETWEEN_RAYS = 0.23  # standard deviation of a middle across the ray, as a share of the distance between two rays
 _BESIDE_RAYS = 2  # rays from one body to the next if nothing is between them
-_WHOLE = 0.3  # share of half of its width that may be missing of a robot that counts as seen wholly
-_LOST = 0.2  # standard deviation of a middle across the ray, as a share of the width that is hidden
-_FEET_SAMPLES = 3  # carpet must be visible so many samples before it, otherwise the near edge is hidden
+_GAP = 1.4  # width of the gap that a ball in front of a robot makes at most, as a multiple of the robot's radius
+_WHOLE = 0.3  # a robot counts as seen wholly if at most this share of half its width is missing
+_LOST = 0.2  # standard deviation of a middle across the ray, as a share of the hidden width
+_FEET_SAMPLES = 3  # the near edge is hidden unless carpet is visible within so many samples before it
 _NOWHERE = np.empty(0, np.intp), np.empty((0, 2))
 
 
@@ -41,9 +41,9 @@ class _Group(NamedTuple):
 
     edges_m: Floats
     right_hidden: bool = False
-    """Something nearer hides the end that is the first."""
+    """Something nearer hides the first end."""
     left_hidden: bool = False
-    """The same for the last end."""
+    """Something nearer hides the last end."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class ObstacleFinder:
             return []
         return [self._obstacle(part) for group in self._groups(rays, edges_m) for part in self._robots(group)]
 
-    def _near_edges(self, hsv: Picture) -> tuple[NDArray[np.intp], Floats]:
+    def _near_edges(self, hsv: Picture) -> tuple[Indices, Floats]:
         """Returns the rays (n) that meet something black, in order, and the points (n, 2) of its feet."""
         if hsv.shape[1] < _BODY_SAMPLES:
             return _NOWHERE
@@ -86,12 +86,12 @@ class ObstacleFinder:
         edges_m = (self.star.ground_m[rays, starts] + self.star.ground_m[rays, np.maximum(starts - 1, 0)]) / 2
         return rays, np.asarray(edges_m)
 
-    def _groups(self, rays: NDArray[np.intp], edges_m: Floats) -> list[_Group]:
-        """Divides the edge points (n, 2) at gaps that are wider than those that a ball before a robot makes."""
+    def _groups(self, rays: Indices, edges_m: Floats) -> list[_Group]:
+        """Divides the edge points (n, 2) at gaps wider than those that a ball in front of a robot makes."""
         gaps_m = np.hypot(*(edges_m - np.roll(edges_m, 1, axis=0)).T)  # the first with the last: the rays go around
         ranges_m = np.hypot(edges_m[:, 0], edges_m[:, 1])
         blur_m, _ = self.mirror.metres_per_px_each(ranges_m)
-        breaks = np.flatnonzero(gaps_m > 1.4 * self.radius_m + blur_m)
+        breaks = np.flatnonzero(gaps_m > _GAP * self.radius_m + blur_m)
         if len(breaks) == 0:
             return [_Group(edges_m)]
         beside = (rays - np.roll(rays, 1))[breaks] % len(self.star.ground_m) <= _BESIDE_RAYS
@@ -118,6 +118,7 @@ class ObstacleFinder:
             yield _Group(part, number == 0 and group.right_hidden, number == parts - 1 and group.left_hidden)
 
     def _obstacle(self, group: _Group) -> Obstacle:
+        """Returns the robot of a group; the usual width places the middle of one that is hidden on one side."""
         edges_m, step_rad = group.edges_m, math.tau / len(self.star.ground_m)
         seen_rad = _turn(edges_m[0], edges_m[-1])
         begin_rad = math.atan2(*edges_m[0, ::-1])
@@ -151,7 +152,8 @@ class ObstacleFinder:
         return median(along_m + np.sqrt(np.maximum(self.radius_m**2 - across_m**2, 0.0)))
 
 
-def _any_before(mask: Mask, rays: NDArray[np.intp], starts: NDArray[np.intp]) -> Mask:
+def _any_before(mask: Mask, rays: Indices, starts: Indices) -> Mask:
+    """Returns flags (n): whether a mask marks one of the last samples before `starts` (n) on the rays (n)."""
     samples = (starts[:, None] - np.arange(1, _FEET_SAMPLES + 1)).clip(0)
     return np.asarray(mask[rays[:, None], samples].any(axis=1))
 

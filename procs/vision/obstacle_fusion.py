@@ -13,8 +13,8 @@ from procs.model.nearest import nearest
 from procs.model.robot import ROBOT, RobotModel
 from procs.model.units import US_PER_S
 
-_SAME = 0.8  # of a robot's width: the middles of two robots are further apart
-_MOST = 100  # obstacles of each detector that count; a field has ten robots
+_SAME = 0.8  # as a share of a robot's width; the middles of two robots are further apart
+_MOST = 100  # most obstacles of a detector that count; a field has ten robots
 
 
 class ObstacleFusionConfig(Config):
@@ -23,15 +23,15 @@ class ObstacleFusionConfig(Config):
     robot: RobotModel = ROBOT
     """Geometry of the other robots."""
     same_m: float | None = Field(default=None, gt=0.0, le=2.0)
-    """Obstacles nearer to each other than that are one; null: 0.8 of the width of a robot."""
+    """Obstacles nearer to each other than this are one; null: 0.8 of the width of a robot."""
     apart_s: float = Field(default=0.06, ge=0.0, le=1.0)
-    """Percepts that were captured further apart are not joined."""
+    """Percepts whose exposures are further apart are not joined."""
     alone_s: float = Field(default=0.3, gt=0.0, le=10.0)
-    """Without obstacles of the omnidirectional camera for so long, those of the pair are published alone."""
+    """Silence of the omnidirectional camera after which the obstacles of the pair are published alone."""
 
 
 class ObstacleFusion(Component):
-    """Publishes the obstacles of both cameras, each once, when the omnidirectional camera has new ones.
+    """Publishes the obstacles of both cameras, each once, when there are new ones of the omnidirectional camera.
 
     While that camera is silent, new obstacles of the pair are published as they are.
     """
@@ -79,15 +79,15 @@ class ObstacleFusion(Component):
 
 
 def _captured_us(percepts: Reads[obstacle_percepts_t]) -> int:
-    """Returns when the newest obstacles were seen: in the tick of their message where it states 0."""
+    """Returns the time of the newest obstacles' exposure; if the message states none, the time of the message."""
     return percepts.value.capture_us or percepts.header.time_us
 
 
 def joined(around: list[obstacle_t], ahead: list[obstacle_t], same_m: float) -> list[obstacle_t]:
     """Returns the obstacles of two detectors, robot frame; two at one place become their weighted mean.
 
-    Weights are the inverse covariances. The nearest two are joined first. Obstacles without a place are left out, and
-    those of a detector beyond its 100 that are nearest to the robot.
+    Weights are the inverse covariances. The pair with the smallest distance is joined first. Obstacles without a
+    plausible place are left out; of each detector only the 100 nearest to the robot count.
     """
     ours, theirs = nearest(around, _MOST), nearest(ahead, _MOST)
     distances = sorted(
@@ -104,6 +104,7 @@ def joined(around: list[obstacle_t], ahead: list[obstacle_t], same_m: float) -> 
 
 
 def _mean(one: obstacle_t, other: obstacle_t) -> obstacle_t:
+    """Returns the weighted mean; if only one covariance can be used, the obstacle that has it."""
     first, second = _covariance(one), _covariance(other)
     if first is None or second is None:
         return other if first is None else one

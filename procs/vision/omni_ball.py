@@ -25,9 +25,9 @@ class OmniBallConfig(DetectorConfig):
     deviation_px: float | None = Setting(default=None, gt=0.0, le=50.0)
     """Standard deviation of the ball's centre in the picture, with the shaking of the mirror; null: by `realism`."""
     least_fit: float = Setting(default=0.4, gt=0.0, lt=1.0)
-    """Least visible share of the ball's area; a ball more hidden than that is not seen."""
+    """Least visible share of the ball's area; a ball of which less is visible is not reported."""
     farthest_m: float = Setting(default=8.0, gt=0.0, le=20.0)
-    """Largest distance of a ball."""
+    """Balls further away are not reported."""
 
     _possible = field_validator("ball_high")(not_below)
     _visible = field_validator("ball")(below_mirror)

@@ -17,31 +17,31 @@ from procs.vision.marker_finder import MarkerFinder
 from procs.vision.obstacle_finder import Obstacle, ObstacleFinder
 from procs.vision.scan import Scan
 
-_BESIDE_BODY_M = 0.03
+_BESIDE_BODY_M = 0.03  # distance from the robot's own body to the begin of the rays
 _MOST_RAYS = 720
-_WIDEST, _NARROWEST = 3.2, 0.4  # way over a line, as shares of its width ...
-_BLURRED_M = 0.15  # ... and over a narrow one as pixels show it
+_WIDEST, _NARROWEST = 3.2, 0.4  # longest and shortest stretch of white on a line, as multiples of its width ...
+_BLURRED_M = 0.15  # ... and the longest one on a narrow line, which pixels blur
 
 
 class OmniFieldConfig(DetectorConfig):
     """Settings of the detector of lines and obstacles."""
 
     rays: int = Setting(default=180, ge=60, le=_MOST_RAYS)
-    """Scan lines around the robot; with fewer than 60 a robot 3 m away is between two of them. There are more if the
-    other robots are narrower than usual."""
+    """Number of rays around the robot. With fewer than 60, a robot 3 m away fits between two of them. More rays are
+    used if the other robots are narrower than usual."""
     robot: RobotModel = ROBOT
     """Geometry of the other robots."""
     field: Field = Field()
-    """Measures of the field; how wide a line is tells lines from other white things."""
+    """Measures of the field; the width of its lines separates them from other white things."""
     nearest_m: float | None = Setting(default=None, gt=0.0)
-    """Begin of the rays; by default just outside the robot's own body."""
+    """Distance at which the rays begin; null: just outside the robot's own body."""
     farthest_m: float = Setting(default=7.0, gt=0.5, le=20.0)
-    """End of the rays; they end before where the mirror shows no ground."""
+    """Distance at which the rays end; they end earlier where the mirror shows no ground."""
     ring_distances_m: tuple[PositiveFloat, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
-    """Radii of the circles that meet those lines which run towards the robot; what the mirror does not show is left
+    """Radii of the rings, which meet the lines that run towards the robot; rings that the mirror does not show are left
     out."""
     most_points: int = Setting(default=150, ge=1, le=10_000)
-    """Line points sent at most, picked evenly from those found."""
+    """Most line points that are published, picked evenly from those found."""
     deviation_px: tuple[PositiveFloat, PositiveFloat] | None = None
     """Standard deviation of a robot's middle in the picture, along and across the ray; null: by `realism`."""
     green_low: Hsv = (38, 70, 40)
@@ -84,7 +84,7 @@ class OmniFieldConfig(DetectorConfig):
 
 
 class OmniField(Detector):
-    """Scans along rays and rings."""
+    """Publishes points on lines and other robots, found along rays and rings of every frame."""
 
     line_points: Writes[line_points_t]
     obstacle_percepts: Writes[obstacle_percepts_t]
@@ -149,9 +149,9 @@ def _begin_m(nearest_m: float | None, robot: RobotModel) -> float:
 
 
 def _ray_count(config: OmniFieldConfig) -> int:
-    """Returns the number of rays, with which narrower robots are found as well as usual ones.
+    """Returns the number of rays that finds narrow robots as reliably as robots of the usual width.
 
-    It grows faster than they get narrower, as a ball before a robot hides more of it.
+    It grows with the cube of the ratio, because a ball in front of a narrow robot also hides a larger share of it.
     """
     narrower = max(1.0, ROBOT.radius_m / config.robot.radius_m)
     return min(_MOST_RAYS, round(config.rays * narrower**3))

@@ -5,22 +5,21 @@ from functools import lru_cache
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from procs.model.algebra import Floats
-from procs.vision.colours import Picture
+from procs.model.algebra import Floats, Indices
+from procs.vision.colours import Mask, Picture
 from procs.vision.mirror import Mirror
 
 
 class Scan:
     """Scan lines of the same length; equal scans are made once in each process.
 
-    `ground_m` (lines, samples, 2) is the place on the ground, robot frame, that the middle of each looked-up pixel
-    sees; NaN above the horizon. It is not the ideal place on the scan line, because findings lie where the pixel looks.
+    `ground_m` (lines, samples, 2) is the place on the ground, robot frame, that the middle of each pixel shows; NaN
+    above the horizon. It differs from the ideal place on the scan line, because samples are whole pixels.
     """
 
     def __init__(self, mirror: Mirror, columns: Floats, rows: Floats) -> None:
-        """`columns`, `rows`: (lines, samples) in pixels."""
+        """Takes the columns and rows (lines, samples) of the scan lines, in pixels; they are rounded."""
         last_px = mirror.size_px - 1
         self._map = np.rint(np.stack((columns, rows), axis=2)).clip(0, last_px).astype(np.int16)
         pixels = self._map.reshape(-1, 2).astype(float)
@@ -29,7 +28,7 @@ class Scan:
     @classmethod
     @lru_cache(maxsize=4)
     def star(cls, mirror: Mirror, rays: int, from_m: float, to_m: float) -> "Scan":
-        """Returns rays at equal angles, counter-clockwise from straight ahead, a sample a pixel, from near to far.
+        """Returns rays at equal angles, counter-clockwise from straight ahead, with one sample per pixel, outwards.
 
         They end where the mirror's picture does.
         """
@@ -40,7 +39,7 @@ class Scan:
     @classmethod
     @lru_cache(maxsize=4)
     def rings(cls, mirror: Mirror, distances_m: tuple[float, ...]) -> "Scan":
-        """Returns circles on the ground, counter-clockwise from straight behind, the largest with a sample a pixel.
+        """Returns circles on the ground, counter-clockwise from straight behind; the largest has a sample per pixel.
 
         Those that the mirror's picture does not show are left out.
         """
@@ -69,7 +68,7 @@ def _last_px(mirror: Mirror) -> float:
     return mirror.size_px / 2 - 1
 
 
-def runs(mask: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+def runs(mask: Mask) -> tuple[Indices, Indices, Indices]:
     """Returns line, first sample and sample after the end of each unbroken run of true values in a mask.
 
     The mask is (lines, samples); each result is (runs).

@@ -16,16 +16,18 @@ from procs.vision.obstacle_finder import Obstacle
 from procs.vision.stereo_rig import Grey, StereoRig
 
 LONGEST_PX = 400.0
-"""Focal length up to which robots are found: with a longer one they are too large and plain to be matched."""
-_NEAREST_M = 0.75  # ahead of the cameras: what is nearer is seen by the omnidirectional one alone
+"""Largest focal length at which robots are found: in larger pictures they are too plain for block matching."""
+_NEAREST_M = 0.75  # ahead of the cameras; only the omnidirectional camera sees what is nearer
 _SUBPIXELS = 16  # OpenCV's disparities are in sixteenths of a pixel
 _LEAST_ROWS = 4  # of a column that a body covers
-_COLUMN_GAP = 8  # columns without a body that may lie within one
-_GAP = 0.3  # of the width of a robot: a body may have so wide a gap, too
+_COLUMN_GAP = 8  # widest gap within a body, in columns ...
+_GAP = 0.3  # ... or, if that is wider, as a share of the width of a robot
 _LEAST_WIDTH = 0.4  # share of the columns of a robot that must show a body
 _WHOLE = 0.85  # share of its width from which a robot counts as seen from edge to edge
-_SLACK_PX = 5  # by which widths differ as a rule
-_DOUBT = 0.4  # standard deviation of the middle, as a share of the width that is missing or too much
+_SLACK_PX = 5  # usual difference between measured and expected widths
+_DOUBT = 0.4  # standard deviation of the middle, as a share of the missing or excess width
+_ACROSS_PX = 2.0  # standard deviation of the middle across the ray ...
+_LEAST_M = 0.02  # ... and the part of the deviations along and across that does not depend on the distance
 
 
 class _Body(NamedTuple):
@@ -40,13 +42,13 @@ class _Body(NamedTuple):
 
 @dataclass(frozen=True)
 class StereoFinder:
-    """Finds robots of known radius in pairs of one rig."""
+    """Finds robots of known radius in the pictures of one stereo pair."""
 
     rig: StereoRig
     lowest_m: float = 0.28
-    """Lower edge of the heights that are looked at: above the ball."""
+    """Lower limit of the heights that count: above the ball."""
     highest_m: float = 0.58
-    """Upper edge of these heights."""
+    """Upper limit of the heights that count."""
     farthest_m: float = 4.5
     """Bodies further ahead are not reported."""
     radius_m: float = ROBOT.radius_m
@@ -58,13 +60,13 @@ class StereoFinder:
 
     @property
     def disparities(self) -> int:
-        """Largest disparity in pixels, a multiple of 16 and at most half of the width; what is nearer is not seen."""
+        """Number of disparities to search, in pixels: a multiple of 16, at most half of the width of a frame."""
         nearest_px = self.rig.focal_px * self.rig.baseline_m / _NEAREST_M
         return 16 * max(1, min(math.ceil(nearest_px / 16), self.rig.width_px // 32))
 
     @property
     def nearest_m(self) -> float:
-        """Distance ahead of the cameras from which on surfaces are measured."""
+        """Least distance ahead of the cameras at which surfaces are measured."""
         return self.rig.focal_px * self.rig.baseline_m / (self.disparities - 1)
 
     def disparity(self, pixels: Grey) -> Floats:
@@ -113,6 +115,7 @@ class StereoFinder:
                     yield _Body(columns[part], near_m[part], left and number == 0, right and number == parts - 1)
 
     def _obstacle(self, body: _Body) -> Obstacle:
+        """Returns the robot of a body; the usual width places the middle of one that is hidden on one side."""
         rig = self.rig
         points_m = np.column_stack((body.near_m, -rig.columns[body.columns] * body.near_m))
         left_rad, right_rad = (math.atan2(points_m[end, 1], points_m[end, 0]) for end in (0, -1))
@@ -129,8 +132,8 @@ class StereoFinder:
         wrong_rad = max(0.0, abs(2 * half_rad - left_rad + right_rad) - _SLACK_PX / rig.focal_px)
         guessed = body.left_hidden != body.right_hidden and 2 * half_rad > left_rad - right_rad
         x_m, y_m = away_m * ahead
-        along = self.deviation_px * away_m**2 / (rig.focal_px * rig.baseline_m) + 0.02
-        across = 2.0 * away_m / rig.focal_px + 0.02 + _DOUBT * (0.0 if guessed else wrong_rad) * away_m
+        along_m = self.deviation_px * away_m**2 / (rig.focal_px * rig.baseline_m) + _LEAST_M
+        across_m = _ACROSS_PX * away_m / rig.focal_px + _LEAST_M + _DOUBT * (0.0 if guessed else wrong_rad) * away_m
         axes = np.column_stack((ahead, (-ahead[1], ahead[0])))
-        covariance_m2 = axes @ np.diag((along**2, across**2)) @ axes.T
+        covariance_m2 = axes @ np.diag((along_m**2, across_m**2)) @ axes.T
         return Obstacle(x_m + rig.forward_m, y_m + rig.baseline_m / 2, covariance_m2)

@@ -12,16 +12,16 @@ from procs.vision.exposure import captured_us
 from procs.vision.stereo_finder import LONGEST_PX, StereoFinder
 from procs.vision.stereo_rig import StereoRig
 
-_ABOVE_BALL_M = 0.03
-_LEAST_BAND_M = 0.25  # of heights that are looked at, above a large ball
-_LOWEST_M, _LOWEST = 0.28, 0.55  # lower edge of what is looked at, and as a share of the height of low robots
+_ABOVE_BALL_M = 0.03  # distance from the top of the ball to the heights that count
+_LEAST_BAND_M = 0.25  # least extent of the heights that count
+_LOWEST_M, _LOWEST = 0.28, 0.55  # lower limit of these heights, and the same as a share of the height of low robots
 
 
 class StereoObsConfig(Config):
     """Settings of the detector."""
 
     rig: StereoRig = StereoRig()
-    """Calibration of the pair; frames of a focal length above 400 px are made smaller before they are searched."""
+    """Calibration of the pair; frames with a focal length above 400 px are scaled down before the search."""
     robot: RobotModel = ROBOT
     """Geometry of the other robots."""
     ball: BallModel = BALL
@@ -36,7 +36,7 @@ class StereoObsConfig(Config):
     @field_validator("ball")
     @classmethod
     def _below_robots(cls, ball: BallModel, info: ValidationInfo) -> BallModel:
-        """Refuses a ball above which there is nothing of a robot, which has been checked before."""
+        """Refuses a ball as high as the robots; the setting `robot` has been checked before."""
         if "robot" in info.data:
             height_m, lowest_m = info.data["robot"].height_m, _lowest_m(info.data["robot"], ball)
             if height_m <= lowest_m:
@@ -58,7 +58,7 @@ class StereoObsConfig(Config):
 
 
 class StereoObs(Component):
-    """Publishes the obstacles of every pair."""
+    """Publishes the obstacles in every pair of frames."""
 
     stage = "sensor_prepare"
     stereo_image: Image
@@ -97,5 +97,5 @@ class StereoObs(Component):
 
 
 def _lowest_m(robot: RobotModel, ball: BallModel) -> float:
-    """Returns the lower edge of the heights that are looked at."""
+    """Returns the lower limit of the heights that count."""
     return max(2 * ball.radius_m + _ABOVE_BALL_M, min(_LOWEST_M, _LOWEST * robot.height_m))

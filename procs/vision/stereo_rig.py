@@ -1,4 +1,4 @@
-"""Calibration of a forward pair of pinhole cameras, level and parallel; both frames lie side by side in one picture."""
+"""Calibration of a forward pair of level, parallel pinhole cameras, whose frames lie side by side in one picture."""
 
 import cv2
 import numpy as np
@@ -24,7 +24,7 @@ class StereoRig(Config):
     height_px: int = Field(default=200, ge=_LEAST_HEIGHT_PX, le=1200)
     """Height of each frame, in pixels."""
     focal_px: float = Field(default=300.0, gt=0.0)
-    """Focal length in pixels: width in the picture of a thing that is as wide as it is far away."""
+    """Focal length in pixels: width in the picture of an object that is as wide as its distance."""
     baseline_m: float = Field(default=0.16, ge=0.02, le=0.6)
     """Distance between the two cameras, which look along the robot's x axis."""
     forward_m: float = Field(default=0.1, ge=-0.5, le=0.5)

@@ -14,7 +14,7 @@ def ground_covariance(
     """Returns the covariance (2 x 2, robot frame, m²) of a point on the ground.
 
     `along_px` and `across_px` are its standard deviations in the picture, along and across the ray from the picture's
-    centre; without the second both are the same.
+    centre; without `across_px` both are equal.
     """
     along_m, across_m = mirror.metres_per_px(math.hypot(x_m, y_m))
     return _along_ray(x_m, y_m, along_px * along_m, (along_px if across_px is None else across_px) * across_m)
