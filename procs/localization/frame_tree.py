@@ -14,23 +14,23 @@ class Mounting(Config):
     """Place of a part; turned about the x axis of its parent, then y, then z."""
 
     parent: str = "base"
-    """Frame that it is mounted on."""
+    """Frame on which the part is mounted."""
     x_m: float = 0.0
-    """Forward of the parent's origin."""
+    """Distance forward from the parent's origin."""
     y_m: float = 0.0
-    """To the left of the parent's origin."""
+    """Distance to the left from the parent's origin."""
     z_m: float = 0.0
-    """Above the parent's origin."""
+    """Height above the parent's origin."""
     roll_rad: float = 0.0
-    """About x."""
+    """Angle about the parent's x axis."""
     pitch_rad: float = 0.0
-    """About y."""
+    """Angle about the parent's y axis."""
     yaw_rad: float = 0.0
-    """About z."""
+    """Angle about the parent's z axis."""
 
     @property
     def transform(self) -> Transform:
-        """The part in its parent."""
+        """Transform from the frame of the part to that of its parent."""
         shift_m = (self.x_m, self.y_m, self.z_m)
         return Transform.of_angles(shift_m, self.roll_rad, self.pitch_rad, self.yaw_rad)
 
@@ -47,7 +47,7 @@ class FrameTreeConfig(Config):
     robot: RobotModel = Field(ROBOT, frozen=True)
     """Geometry of the robot; the middle of its mouth is the frame `kicker`."""
     mounted: dict[str, Mounting] = Field({}, frozen=True)
-    """Further frames that do not move on the robot, or other places of those two."""
+    """Further frames that do not move on the robot; an entry `camera` or `kicker` replaces the usual place."""
 
     @property
     def mountings(self) -> dict[str, Mounting]:
@@ -57,7 +57,7 @@ class FrameTreeConfig(Config):
 
 
 class FrameTree(Component):
-    """Provides `Transforms` to the components of its robot."""
+    """Publishes the robot's frames, and provides `Transforms` to its components."""
 
     stage = "worldstate"
     provides = Transforms

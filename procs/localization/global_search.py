@@ -1,8 +1,8 @@
-"""Looks for the robot on the whole field when only its heading is known, roughly.
+"""Searches the whole field for the robot when only its approximate heading is known.
 
-As on CAMBADA's robots the field is searched on a grid of positions. Lines, grid and points are rounded to
-cells of one table, so that a position's score is a sum of table entries and the whole field takes well under a
-millisecond. Turned by half a turn the field looks the same; that is why the compass has to say the heading.
+As on CAMBADA's robots, the search tries a grid of positions. Lines, grid and points are rounded to cells of one table.
+The score of a position is therefore a sum of table entries, and a search takes well under a millisecond. The field
+looks the same after half a turn, so the heading has to come from the compass.
 """
 
 from functools import lru_cache
@@ -13,11 +13,11 @@ from procs.localization.line_map import LineMap
 from procs.localization.line_matching import LinePoints
 from procs.model.frames import Floats
 
-_CELL_M = 0.1  # of the table
+_CELL_M = 0.1  # width of a cell of the table
 _STEP = 4  # cells from one position of the grid to the next
-_LEAST_BEYOND_M = 0.4  # so far beyond the lines there are positions, ...
-_BESIDE_WALL_M = 0.6  # ... and up to this distance from a wall further away, as far as robots see lines
-_ROBUST_M = 0.35  # distance from a line at which a point scores half: the nearest position of the grid still scores
+_LEAST_BEYOND_M = 0.4  # the grid reaches this far beyond the lines ...
+_BESIDE_WALL_M = 0.6  # ... or, if that is further, to this distance from the wall; no further than robots see lines
+_ROBUST_M = 0.35  # distance from a line at which a point scores half, so wide that the nearest position still scores
 
 
 class GlobalSearch:
@@ -40,7 +40,14 @@ class GlobalSearch:
         self._starts = (grid_y.ravel() + half_y + pad) * self._width + grid_x.ravel() + half_x + pad
 
     def best(self, points: LinePoints, headings_rad: Floats, count: int, apart_m: float = 1.0) -> Floats:
-        """Returns the `count` best poses (count, 3), best first, no two nearer to each other than `apart_m`."""
+        """Returns the `count` best poses (count, 3), best first, no two nearer to each other than `apart_m`.
+
+        Args:
+            points: white points, robot frame.
+            headings_rad: headings (n) to try.
+            count: number of poses.
+            apart_m: least distance of two poses along x or y.
+        """
         scores = np.stack([self._scores(points, float(heading)) for heading in headings_rad])
         turn = scores.argmax(axis=0)
         score = scores.max(axis=0)

@@ -1,55 +1,58 @@
-"""Possible poses of a lost robot, followed until a hypothesis explains the frames clearly best."""
+"""Possible poses of a lost robot, followed until one hypothesis clearly explains the frames best."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from procs.localization.pose_filter import moved
 from procs.model.frames import Floats, rotation
 
-_MEMORY = 0.85  # of a hypothesis' mean score after ...
+_MEMORY = 0.85  # weight of a hypothesis' mean score after ...
 _MEMORY_S = 0.08  # ... this time
-_MOST = 8  # hypotheses
-_SAME_M, _SAME_RAD = 0.5, 0.3  # poses nearer to each other than both are the same
-_LEAST_FRAMES = 3  # for a decision
-_OLD_ENOUGH_S = 0.38  # age for a decision
-_CLEAR_LEAD = 0.15  # over the next best, for a decision as early as that
-_PATIENT_LEAD = 0.04  # for a late decision
-_PATIENCE_S = 2.3  # age from which the lead may be as small as that
+_MOST = 8  # most hypotheses
+_SAME_M, _SAME_RAD = 0.5, 0.3  # two poses closer than both limits are the same
+_LEAST_FRAMES = 3  # least number of frames for a decision
+_OLD_ENOUGH_S = 0.38  # least age for a decision
+_CLEAR_LEAD = 0.15  # least lead over the next best hypothesis, in score, for an early decision
+_PATIENT_LEAD = 0.04  # the same for a late decision
+_PATIENCE_S = 2.3  # age at which a decision counts as late
 
 
 @dataclass
 class Hypothesis:
-    """A possible pose (3) with the mean score of its matches."""
+    """A possible pose with the mean score of its matches."""
 
     pose: Floats
+    """(3): x, y (m), heading (rad), world frame."""
     score: float
-    frames: int = field(default=1)
-    age_s: float = field(default=0.0)
+    frames: int = 1
+    """Number of frames with a match."""
+    age_s: float = 0.0
 
 
 class Hypotheses:
-    """Hypotheses of a lost robot: followed by odometry, scored in each frame, joined when they meet; best first."""
+    """Hypotheses of a lost robot: moved by odometry, scored in each frame, joined when they meet."""
 
     def __init__(self) -> None:
         self.known: list[Hypothesis] = []
+        """The hypotheses, best first."""
 
     def clear(self) -> None:
-        """Forgets all."""
+        """Forgets all hypotheses."""
         self.known = []
 
     def predict(self, ahead_m: float, left_m: float, turn_rad: float) -> None:
-        """Moves the hypotheses with the robot, by its odometry."""
+        """Moves the hypotheses with the robot by its odometry: a way in its former frame, and a turn."""
         for each in self.known:
             way_m = rotation(float(each.pose[2]) + turn_rad / 2) @ (ahead_m, left_m)
             each.pose = moved(each.pose, way_m, turn_rad)
 
     def starts(self, others: Floats) -> Floats:
-        """Returns start poses (k, 3) for this frame's match: the known ones, then `others` (n, 3)."""
+        """Returns start poses (k, 3) for this frame's match: the hypotheses, then `others` (n, 3)."""
         return np.vstack([each.pose for each in self.known] + [others])
 
     def update(self, poses: Floats, scores: Floats, interval_s: float) -> None:
-        """Takes the matched poses and scores of `starts`, and the time since the last frame."""
+        """Takes poses (k, 3) and scores (k) of the matches from `starts`, and the time since the last frame."""
         count, memory = len(self.known), _MEMORY ** (interval_s / _MEMORY_S)
         for each, pose, score in zip(self.known, poses, scores, strict=False):
             each.pose = pose
@@ -65,7 +68,7 @@ class Hypotheses:
         self.known = sorted(kept, key=lambda each: -each.score)[:_MOST]
 
     def decided(self, good_score: float) -> Hypothesis | None:
-        """Returns the best hypothesis if it is good, old enough, and far enough ahead of the rest."""
+        """Returns the best hypothesis if it scores `good_score`, is old enough, and leads clearly; otherwise None."""
         best = self.known[0] if self.known else None
         if best is None or best.score < good_score or best.frames < _LEAST_FRAMES or best.age_s < _OLD_ENOUGH_S:
             return None
@@ -74,5 +77,6 @@ class Hypotheses:
 
 
 def _same(one: Floats, other: Floats) -> bool:
+    """Returns whether two poses (3) are so close that they count as one hypothesis."""
     turn_rad = np.remainder(one[2] - other[2] + np.pi, 2 * np.pi) - np.pi
     return bool(np.hypot(*(one[:2] - other[:2])) < _SAME_M and abs(turn_rad) < _SAME_RAD)

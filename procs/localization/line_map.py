@@ -1,8 +1,8 @@
 """The field's white lines as a table: for every place the signed distance to the nearest line, and its direction.
 
-The table of Lauer, Lange and Riedmiller ("Calculating the Perfect Match", RoboCup 2005), with one difference: distances
-are signed and each cell is a plane, distance and unit normal at its middle. So the residual is smooth across a line and
-exact beside a straight one, with cells as large as 5 cm.
+The table follows Lauer, Lange and Riedmiller ("Calculating the Perfect Match", RoboCup 2005), with one difference:
+distances are signed, and each cell is a plane, given by the distance and the unit normal at its middle. With cells as
+large as 5 cm, the residual is therefore smooth across a line and exact beside a straight one.
 """
 
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from procs.model.field import Arc, Field, Point, Segment
 from procs.model.frames import Floats
 
-_BLOCK_M = 0.5
+_BLOCK_M = 0.5  # width of the blocks that share their candidates for the nearest line
 _MARGIN_M = 1.5  # beyond the field, so that points there still pull towards the touch lines
 
 
@@ -60,8 +60,8 @@ def _clipped(cells: Floats, count: int) -> NDArray[np.intp]:
 def _nearest(field: Field, places_m: Floats) -> Floats:
     """Returns signed distance and unit normal (n, 3) of the line or mark that is nearest to each place (n, 2).
 
-    Places lie in square blocks. Only those lines are looked at in a block that can be nearest somewhere in it: their
-    distance to its middle is at most that of the nearest one, and twice the way from the middle to a corner.
+    Places are grouped in square blocks. For a block, only those lines are compared that can be nearest somewhere in it:
+    their distance from its middle exceeds that of the nearest line by at most twice the way from middle to corner.
     """
     shapes: list[Callable[[Floats], Floats]] = [partial(_to_segment, segment) for segment in field.segments()]
     shapes += [partial(_to_arc, arc) for arc in field.arcs()]
@@ -83,6 +83,7 @@ def _nearest(field: Field, places_m: Floats) -> Floats:
 
 
 def _to_segment(segment: Segment, places_m: Floats) -> Floats:
+    """Returns signed distance and unit normal (n, 3) from a segment to places (n, 2)."""
     start = np.array(segment.start)
     along = np.array(segment.end) - start
     length_m = float(np.hypot(*along))
@@ -97,6 +98,7 @@ def _to_segment(segment: Segment, places_m: Floats) -> Floats:
 
 
 def _to_arc(arc: Arc, places_m: Floats) -> Floats:
+    """Returns signed distance and unit normal (n, 3) from an arc to places (n, 2)."""
     signed = _from_point(arc.centre, places_m)
     signed[:, 0] -= arc.radius_m
     angle_rad = np.arctan2(signed[:, 2], signed[:, 1])
@@ -114,6 +116,7 @@ def _to_arc(arc: Arc, places_m: Floats) -> Floats:
 
 
 def _from_point(point: Point, places_m: Floats) -> Floats:
+    """Returns distance and unit vector (n, 3) from a point to places (n, 2)."""
     away_m = places_m - np.array(point)
     distance_m = np.hypot(away_m[:, 0], away_m[:, 1])
     return np.column_stack((distance_m, away_m / np.maximum(distance_m, 1e-9)[:, None]))

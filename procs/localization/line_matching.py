@@ -1,9 +1,9 @@
 """Fits a pose to the white points that a robot sees, so that they lie on the field's lines.
 
-The error-minimising self-localization of Lauer, Lange and Riedmiller ("Calculating the Perfect Match", RoboCup 2005):
-each point adds the robust error 1 - c²/(c² + e²) of its distance e from the nearest line. Gauss-Newton steps with
-weights take the place of RPROP, and every point counts by the accuracy with which an omnidirectional camera
-measures it along the line's normal.
+This is the error-minimising self-localization of Lauer, Lange and Riedmiller ("Calculating the Perfect Match", RoboCup
+2005): each point adds the robust error 1 - c²/(c² + e²) of its distance e from the nearest line. Two things differ:
+weighted Gauss-Newton steps take the place of RPROP, and each point is weighted by the accuracy with which an
+omnidirectional camera measures it along the line's normal.
 """
 
 from dataclasses import dataclass
@@ -13,9 +13,11 @@ import numpy as np
 from procs.localization.line_map import LineMap
 from procs.model.frames import Floats
 
-_DAMPING = np.diag((20.0, 20.0, 20.0))  # holds back directions that no line tells anything about
-_LONGEST_STEP = np.array((0.3, 0.3, 0.15))  # m, m, rad: the planes of the table hold near by only
+_DAMPING = np.diag((20.0, 20.0, 20.0))  # 1/m², 1/m², 1/rad²: limits steps in directions that no line determines
+_LONGEST_STEP = np.array((0.3, 0.3, 0.15))  # m, m, rad: the planes of the table are valid nearby only
 _CONVERGED = np.array((1e-3, 1e-3, 3e-4))  # m, m, rad: far below the error of a match
+_NEAR_SD_M = 0.02  # deviation of a point near the robot ...
+_SD_1_M = 0.005  # ... and its growth with the squared distance in m², about a pixel of the usual mirror at 2 to 5 m
 
 
 class LinePoints:
@@ -29,13 +31,17 @@ class LinePoints:
         self.x_m = x_m
         self.y_m = y_m
         self.range_m = np.hypot(x_m, y_m)
-        self.along_m2 = (0.02 + 0.005 * self.range_m**2) ** 2
-        self.across_m2 = (0.02 + 0.005 * self.range_m) ** 2
+        along_m = _NEAR_SD_M + _SD_1_M * self.range_m**2
+        self.along_m2 = along_m**2
+        """(n): variance along the ray."""
+        self.across_m2 = (_NEAR_SD_M + _SD_1_M * self.range_m) ** 2
+        """(n): variance across the ray."""
         self.stretch = (self.along_m2 - self.across_m2) / np.maximum(self.range_m, 1e-6) ** 2
-        """(n): growth of the variance along a line's normal with the square of the way ahead along it."""
-        self.trust = 1.0 / (0.02 + 0.005 * self.range_m**2)
+        """(n): growth of the variance along a line's normal with the squared part of the ray along that normal."""
+        self.trust = 1.0 / along_m
+        """(n): weight in a search of the whole field."""
         self.share = self.trust / max(float(self.trust.sum()), 1e-9)
-        """(n): of the score."""
+        """(n): share of the score of a match."""
 
     @classmethod
     def chosen(cls, x_m: Floats, y_m: Floats, reach_m: float, most: int) -> "LinePoints":
@@ -47,7 +53,7 @@ class LinePoints:
         return cls(x_m[near], y_m[near])
 
     def thinned(self, most: int) -> "LinePoints":
-        """Returns at most that many of the points."""
+        """Returns at most `most` of the points, evenly chosen."""
         return LinePoints.chosen(self.x_m, self.y_m, np.inf, most)
 
     def __len__(self) -> int:
@@ -59,17 +65,17 @@ class Matches:
     """Results of k start poses."""
 
     poses: Floats
-    """(k, 3): x, y, heading."""
+    """(k, 3): x, y (m), heading (rad), world frame."""
     information: Floats
-    """(k, 3, 3): curvature of the error at each pose, the inverse of a covariance if all points were independent."""
+    """(k, 3, 3): curvature of the error at each pose; the inverse of its covariance if all points were independent."""
     scores: Floats
-    """(k): 1 if every point lies on a line, near 0 if none does."""
+    """(k): 1 if every point lies on a line, near 0 if no point does."""
 
 
 def match(lines: LineMap, points: LinePoints, starts: Floats, iterations: int = 6, robust_m: float = 0.25) -> Matches:
     """Moves each of k start poses (k, 3) to the nearest minimum of the robust error.
 
-    `robust_m` is c: a point twice as far from every line hardly counts.
+    `robust_m` is the c of the robust error: a point twice as far from every line hardly counts.
     """
     poses = starts.copy()
     best = _evaluate(lines, points, poses, robust_m)

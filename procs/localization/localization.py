@@ -1,4 +1,4 @@
-"""Self-localization: matches white points with the field's lines, and follows with odometry."""
+"""Self-localization: matches white points with the field's lines, and follows the robot with odometry."""
 
 from typing import NamedTuple
 
@@ -23,9 +23,9 @@ from procs.model.realism import Realism
 from procs.vision.calibration import MirrorConfig
 
 _FASTEST_M_S = 8.0  # no robot drives faster
-_SHORT_S = 0.1  # for so long the velocity of the last tick tells the motion well enough
-_AHEAD_S = 0.02  # clocks of cameras may be that much ahead
-_USUAL = MirrorConfig().mirror()  # for which the expected errors are stated
+_SHORT_S = 0.1  # up to this age of an exposure, the velocity of the last tick describes the motion well enough
+_AHEAD_S = 0.02  # clocks of cameras may be ahead by this much
+_USUAL = MirrorConfig().mirror()  # the mirror for which the expected errors are stated
 _AWAY_M = 2.0  # distance at which mirrors are compared
 
 
@@ -35,7 +35,7 @@ class SeenPoints(NamedTuple):
     x_m: Floats
     y_m: Floats
     moved: tuple[float, float] = (0.0, 0.0)
-    """Standard deviations in m and rad of the motion since an exposure long ago."""
+    """Standard deviations in m and rad of the motion since the exposure, if that was long ago."""
 
 
 _NOTHING = SeenPoints(np.empty(0), np.empty(0))
@@ -47,30 +47,31 @@ class LocalizationConfig(Config):
     field: Field = Field()
     """Measures of the field."""
     start_x_m: float | None = Setting(None, frozen=True)
-    """Start of the robot if it is known, world frame; needs the other two. It counts at the beginning of a run only."""
+    """x of the robot's start in the world frame, if it is known; requires start_y_m and start_heading_rad. The start
+    counts only at the beginning of a run."""
     start_y_m: float | None = Setting(None, frozen=True)
-    """Second part of the start, see start_x_m."""
+    """y of the robot's start; see start_x_m."""
     start_heading_rad: float | None = Setting(None, frozen=True)
-    """Third part of the start, see start_x_m."""
+    """Heading of the robot at its start; see start_x_m."""
     realism: Realism = "realistic"
     """Errors of the camera that the pose's covariance allows for: none, friendly, realistic or harsh."""
     mirror: MirrorConfig = MirrorConfig()
-    """Calibration of the camera: the fewer pixels it has, the larger the errors."""
+    """Calibration of the camera; a picture with fewer pixels has larger errors."""
     reach_m: float = Setting(default=7.0, gt=0.5, le=12.0)
     """White points further away are not used."""
     points: int = Setting(default=100, ge=10)
     """Most white points of a frame that are used."""
     search_period_s: float = Setting(default=0.5, gt=0.0, le=60.0)
-    """From one search of the whole field to the next while the pose is known."""
+    """Time from one search of the whole field to the next while the pose is known."""
     lost_score: float = Setting(default=0.4, gt=0.0, lt=1.0)
-    """The pose is given up when the points fit worse than this for some frames; 1 is a perfect fit."""
+    """The pose is given up when the mean score of the matches falls below this; 1 is a perfect fit."""
     good_score: float = Setting(default=0.5, gt=0.0, lt=1.0)
-    """A place is believed only if the points fit at least that well."""
+    """A lost robot accepts a pose only with at least this mean score."""
 
     @field_validator("start_heading_rad")
     @classmethod
     def _start_is_whole(cls, heading_rad: float | None, info: ValidationInfo) -> float | None:
-        """Refuses a part of a start, and one outside the walls."""
+        """Refuses an incomplete start, and one outside the walls."""
         if {"field", "start_x_m", "start_y_m"} <= info.data.keys():
             x_m, y_m, field = info.data["start_x_m"], info.data["start_y_m"], info.data["field"]
             if len({value is None for value in (x_m, y_m, heading_rad)}) > 1:
@@ -90,7 +91,7 @@ class LocalizationConfig(Config):
 
 
 class Localization(Component):
-    """Publishes the pose in each frame; `localized` is false while the place on the field is still searched."""
+    """Publishes the pose in each tick; `localized` is false while the robot searches for its place on the field."""
 
     stage = "sensor_process"
 
@@ -162,12 +163,13 @@ class Localization(Component):
         )
 
     def _compass_rad(self) -> float | None:
+        """Returns the heading that a new message of the compass states; None without one."""
         imu = self.imu.value
         sound = self.imu.refreshed and plausible(imu.heading_rad, imu.yaw_rate_rad_s)
         return imu.heading_rad if sound else None
 
     def _sees_anew(self) -> bool:
-        """Returns whether there are points of another exposure than before; the same ones tell nothing new."""
+        """Returns whether there are points of a new exposure; points of the same exposure would count twice."""
         if not self.line_points.refreshed:
             return False
         capture_us = self.line_points.value.capture_us
@@ -177,10 +179,10 @@ class Localization(Component):
         return True
 
     def _as_seen_now(self, points: line_points_t) -> SeenPoints:
-        """Returns the points in the frame of the robot that has driven on since their exposure.
+        """Returns the points in the robot frame of this tick: the robot has driven on since their exposure.
 
-        There are none if the way since then is not known, or the exposure is still to come: wrong places of lines
-        would be worse.
+        Returns no points if the way since the exposure is not known or the exposure is in the future, because wrong
+        places of lines would be worse than none.
         """
         seen_m = np.array((points.x_m, points.y_m)).T
         age_s = self.clock.since_s(points.capture_us) if points.capture_us else 0.0
@@ -201,7 +203,10 @@ class Localization(Component):
         return SeenPoints(seen_m[:, 0], seen_m[:, 1], moved)
 
     def _motion(self) -> Motion:
-        """Returns the way since the last tick by the wheels, and the turn by the gyro, which slip does not affect."""
+        """Returns the motion since the last tick: the way by the wheels, the turn by the gyro, which does not slip.
+
+        Without a gyro, the turn is that of the wheels, too.
+        """
         now = self.odometry.value
         sound = plausible(now.x_m, now.y_m, now.heading_rad, now.vx_m_s, now.vy_m_s)
         if not (self.odometry.refreshed and sound):
@@ -212,7 +217,7 @@ class Localization(Component):
         self._turning_rad_s = now.omega_rad_s if plausible(now.omega_rad_s) else 0.0
         way_m = rotation(-before.heading_rad - turn_rad / 2) @ (now.x_m - before.x_m, now.y_m - before.y_m)
         if np.hypot(*way_m) > _FASTEST_M_S * max(passed_s, self.clock.period_s):
-            return Motion(0.0, 0.0, 0.0, 0.0)  # the driver began anew: its frame has moved, not the robot
+            return Motion(0.0, 0.0, 0.0, 0.0)  # the driver restarted: its frame has moved, not the robot
         if self._compass_rad() is not None:
             rate_rad_s = self.imu.value.yaw_rate_rad_s
             if before is not now:

@@ -8,19 +8,20 @@ from procs.model.estimation import predict, update
 from procs.model.frames import Floats, rotation
 from procs.model.geometry import wrap_rad
 
-_TICK_S = 0.05  # the errors below are those that add up in this time
-_PATH_ERROR = 0.1  # share of the way: wheel scale, encoder noise, slip
-_STANDING_M = 0.002  # error of the place of a robot that stands
-_TURN_ERROR = 0.03  # share of the turn
-_STANDING_RAD = 0.002  # error of the heading of a robot that stands
+_TICK_S = 0.05  # the errors below add up in this time
+_PATH_ERROR = 0.1  # error as a share of the way: wheel scale, encoder noise, slip
+_STANDING_M = 0.002  # error of the place of a standing robot
+_TURN_ERROR = 0.03  # error as a share of the turn
+_STANDING_RAD = 0.002  # error of the heading of a standing robot
 _STRAIN_MEMORY_S = 0.17  # time constant of the mean innovation
 _NO_ERROR, _UNIT, _AXES = np.zeros(3), np.eye(3), np.arange(3)
 
 
 class PoseFilter:
-    """Error-state form: the filter's state is the small error of x, y and heading, zero except during a correction.
+    """Error-state Kalman filter of a pose.
 
-    So the heading needs no care in the filter's algebra.
+    Its state is the small error of x, y and heading, which is zero except during a correction. The filter's algebra
+    therefore never meets an angle that wraps around.
     """
 
     def __init__(self, pose: Floats, deviations: tuple[float, float, float]) -> None:
@@ -45,8 +46,8 @@ class PoseFilter:
     def correct(self, pose: Floats, covariance: Floats, interval_s: float = _TICK_S) -> None:
         """Takes a measurement of the whole pose (3) with its covariance (3, 3), `interval_s` after the last one.
 
-        Wheels that slip, or another robot that pushes, make the prediction wrong frame after frame in the same
-        direction; the mean of the last innovations therefore counts as an error of the next prediction.
+        Slipping wheels, or another robot that pushes, falsify the prediction in the same direction frame after frame.
+        The mean of the last innovations therefore counts as an error of the next prediction.
         """
         interval_s = max(interval_s, 1e-3)
         innovation = pose - self.pose
@@ -58,9 +59,9 @@ class PoseFilter:
 
 
 def motion_errors(way_m: float, turn_rad: float, duration_s: float) -> tuple[float, float]:
-    """Returns the standard deviations in m and rad of a motion by odometry that takes so long.
+    """Returns the standard deviations in m and rad of a motion by odometry that takes `duration_s`.
 
-    Errors are independent from tick to tick: their variances add up, whatever the length of a tick.
+    Errors are independent from tick to tick. Their variances add up, so the length of a tick does not matter.
     """
     ticks = max(duration_s, 1e-3) / _TICK_S
     error_m = (_PATH_ERROR * way_m / ticks + _STANDING_M) * math.sqrt(ticks)

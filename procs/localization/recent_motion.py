@@ -1,4 +1,4 @@
-"""Way of a robot in the last 1.5 s, for points that were seen some ticks ago."""
+"""Motion of a robot in the last 1.5 s, for points that were seen some ticks ago."""
 
 from collections import deque
 from typing import NamedTuple
@@ -9,7 +9,7 @@ from procs.localization.self_localizer import Motion
 from procs.model.frames import Floats, rotation
 
 MEMORY_US = 1_500_000
-"""Older motions are forgotten; no camera takes longer from the exposure to its points."""
+"""Older motions are forgotten; no camera takes longer from the exposure to the points."""
 
 
 class Way(NamedTuple):
@@ -21,19 +21,19 @@ class Way(NamedTuple):
 
 
 class RecentMotion:
-    """Motions from update to update, the newest last."""
+    """Memory of the motions between updates."""
 
     def __init__(self) -> None:
         self._steps: deque[tuple[int, int, Motion]] = deque()
 
     def add(self, from_us: int, to_us: int, motion: Motion) -> None:
-        """Takes the motion between two times, each of which begins where the last one ended."""
+        """Takes the motion between two times; `from_us` is the `to_us` of the call before."""
         self._steps.append((from_us, to_us, motion))
         while self._steps[0][1] < to_us - MEMORY_US:
             self._steps.popleft()
 
     def since(self, time_us: int) -> Way | None:
-        """Returns the way from a time until now; None if the motion of that time is not known."""
+        """Returns the way from a time until now; None if the memory does not reach back to that time."""
         if not self._steps or time_us < self._steps[0][0]:
             return None
         shift_m, turn_rad = np.zeros(2), 0.0

@@ -1,11 +1,13 @@
 """Localizes a robot on the field from white points, odometry and compass, and notices when it is lost.
 
-While the robot is localized, each frame's points are matched from the predicted pose, and the match corrects the
-filter. The whole field is searched every now and then; a place that explains the points clearly better, several
-times in a row, means that the robot was carried away. While it is lost, hypotheses from that search are followed until
-one is ahead. The compass is never averaged into the heading, because it drifts; it tells the two halves of the
-symmetric field apart and bounds the heading. Without a compass a lost robot stays lost: the field looks the same from
-both halves.
+A localized robot matches the points of each frame, starting from the predicted pose, and the match corrects the filter.
+From time to time it searches the whole field. If another place explains the points clearly better several times in a
+row, the robot was carried away and is lost.
+
+A lost robot follows hypotheses from searches of the whole field until one of them leads.
+
+The compass distinguishes the two halves of the symmetric field and bounds the heading. It drifts, so it is never
+averaged into the heading. Without a compass a lost robot stays lost, because the field looks the same from both halves.
 """
 
 import math
@@ -25,7 +27,7 @@ from procs.model.geometry import wrap_rad
 _LOST_DEVIATIONS = (5.0, 5.0, 0.3)  # m, m, rad: of the pose of a lost robot
 _FOUND_DEVIATIONS = (0.1, 0.1, 0.05)  # m, m, rad: of a pose that has just been found
 _START_DEVIATIONS = (0.3, 0.3, 0.1)  # m, m, rad: of a start that the settings state
-_COMPASS_ERRORS_RAD = (0.0, -0.12, 0.12, -0.24, 0.24)  # tried one after the other while searching
+_COMPASS_ERRORS_RAD = (0.0, -0.12, 0.12, -0.24, 0.24)  # errors of the compass that a search tries in turn
 _COMPASS_MEMORY_S = 25.0  # time constant of the compass offset: so slow that a carried robot learns little wrong
 _COMPASS_FORGETS_S = 5.0  # time constant with which the offset fades while the robot searches
 _SCORE_MEMORY_S = 0.5  # time constant of the mean score
@@ -42,21 +44,21 @@ class LocalizerSettings:
     least_points: int = 8
     """Frames with fewer points are not used."""
     search_points: int = 40
-    """Most points for a search of the whole field."""
+    """Most points that a search of the whole field uses."""
     search_period_s: float = 0.5
-    """From one search of the whole field to the next while localized."""
+    """Time from one search of the whole field to the next while localized."""
     lost_score: float = 0.4
     """The pose is given up when the mean score falls below this; 1 is a perfect fit."""
     good_score: float = 0.5
-    """A place is believed only with at least this score."""
+    """A lost robot accepts a pose only with at least this mean score."""
     rival_lead: float = 0.12
-    """Lead of another place over the pose, in score, with which it counts as a rival."""
+    """Another place counts as a rival of the pose if its score is higher by more than this."""
     rivals: int = 3
     """The pose is given up after so many searches in a row with a rival."""
     compass_limit_rad: float = 0.6
-    """A heading that differs more from the compass, without its offset, is wrong."""
+    """A heading is wrong if it differs by more than this from the compass without its offset."""
     correlation: float = 4.0
-    """Points that share one error: factor of the match's covariance over that of independent points."""
+    """Number of points that share one error; the covariance of a match is larger by this factor."""
     errors: ExpectedErrors = EXPECTED["realistic"]
     """Errors of the camera."""
 
@@ -95,19 +97,19 @@ class SelfLocalizer:
 
     @property
     def pose(self) -> Floats:
-        """x, y (m), heading (rad) in the world frame; (3)."""
+        """(3): x, y (m), heading (rad), world frame."""
         return self._filter.pose
 
     @property
     def covariance(self) -> Floats:
-        """(3, 3) of x, y, heading, with the errors that last."""
+        """(3, 3) of x, y, heading, including the lasting errors."""
         errors = self._settings.errors
         if errors.lasting_m == errors.lasting_rad == 0.0:
             return self._filter.covariance
         return self._filter.covariance + _diagonal(errors.lasting_m, errors.lasting_rad)
 
     def change(self, lines: LineMap, settings: LocalizerSettings) -> None:
-        """Takes new settings; keeps the pose and everything learnt."""
+        """Takes new lines and settings; keeps the pose and everything learnt."""
         self._lines, self._settings = lines, settings
         self._search = global_search(lines, settings.reach_m)
 
@@ -128,7 +130,7 @@ class SelfLocalizer:
             x_m: white points (n) of a new frame, robot frame; empty without a new frame.
             y_m: see x_m.
             duration_s: time since the last update.
-            moved: standard deviations in m and rad of the motion by which points of an old exposure were moved.
+            moved: standard deviations in m and rad of the motion that moved the points since an old exposure.
         """
         self._since_frame_s += duration_s
         self._since_search_s += duration_s
@@ -146,7 +148,7 @@ class SelfLocalizer:
             self._seek(points, compass_rad - self.compass_offset_rad, interval_s)
 
     def _track(self, points: LinePoints, compass_rad: float | None, shared: Floats, interval_s: float) -> None:
-        """Corrects the pose by the points; gives it up if points or compass contradict it."""
+        """Corrects the pose with the points; gives it up if points or compass contradict it."""
         settings = self._settings
         found = match(self._lines, points, self.pose[None])
         self.score += _share(interval_s, _SCORE_MEMORY_S) * (float(found.scores[0]) - self.score)
@@ -166,7 +168,7 @@ class SelfLocalizer:
             self._look_for_rivals(points, heading_rad)
 
     def _look_for_rivals(self, points: LinePoints, heading_rad: float) -> None:
-        """Searches the whole field; gives the pose up if another place was clearly better several times in a row."""
+        """Searches the whole field; gives the pose up once another place was clearly better several times in a row."""
         thin = points.thinned(self._settings.search_points)
         others = self._search.best(thin, np.array([heading_rad]), 3)
         found = match(self._lines, thin, np.vstack((self.pose, others)))
@@ -176,7 +178,7 @@ class SelfLocalizer:
             self._lose()
 
     def _seek(self, points: LinePoints, heading_rad: float, interval_s: float) -> None:
-        """Follows the hypotheses of a lost robot by the points and its compass, until one of them is ahead."""
+        """Updates the hypotheses of a lost robot with points and compass; takes the pose of one that leads clearly."""
         self.compass_offset_rad *= 1.0 - _share(interval_s, _COMPASS_FORGETS_S)
         thin = points.thinned(self._settings.search_points)
         turn_rad = _COMPASS_ERRORS_RAD[self._seeks % len(_COMPASS_ERRORS_RAD)]
@@ -201,7 +203,7 @@ class SelfLocalizer:
         return shared + _diagonal(*moved)
 
     def _match_covariance(self, found: Matches, shared: Floats) -> Floats:
-        weak = np.diag((1.0, 1.0, 1.0))  # so that a direction without lines has a finite, large variance
+        weak = np.eye(3)  # gives a direction without lines a finite, large variance
         return np.asarray(self._settings.correlation * np.linalg.inv(found.information[0] + weak) + shared)
 
     def _found(self, pose: Floats, deviations: tuple[float, float, float], score: float) -> None:
