@@ -23,8 +23,8 @@ from procs.model.robot import ROBOT, RobotModel
 from procs.model.units import US_PER_S
 from procs.model.wheel_messages import WheelReader
 
-_PLAUSIBLE = 2.0  # wheels cannot turn faster than their limit times this, even when they are pushed
-_LONGEST_GAP_S = 0.5  # what comes after a longer silence does not cover the time before
+_PLAUSIBLE = 2.0  # wheels cannot turn faster than this multiple of their limit, even when they are pushed
+_LONGEST_GAP_S = 0.5  # a measurement after a longer silence does not count for the silence
 
 _Deviation = Annotated[float, Setting(ge=0.0, le=1.0)]
 
@@ -37,29 +37,29 @@ class BaseConfig(Config):
     speed_m_s: PositiveFloat = 3.5
     """Highest speed over the ground."""
     acceleration_m_s2: PositiveFloat = 3.0
-    """Limit while the robot gets faster."""
+    """Highest acceleration over the ground."""
     braking_m_s2: PositiveFloat = 4.0
-    """Limit while the robot gets slower."""
+    """Highest deceleration over the ground."""
     omega_rad_s: PositiveFloat = 6.0
     """Highest turning speed."""
     angular_acceleration_rad_s2: PositiveFloat = 20.0
-    """Limit of its change."""
+    """Highest change of the turning speed."""
     command_timeout_s: PositiveFloat = 0.25
-    """The robot brakes to a standstill when its newest motor command is older."""
+    """The robot brakes to a standstill when its newest motor command is older than this."""
     realism: Realism = "realistic"
-    """Errors of the wheels on which the covariance counts: none, friendly, realistic or harsh."""
+    """Errors of the wheels that the covariance allows for: none, friendly, realistic or harsh."""
     wheel_scale_sd: _Deviation | None = None
-    """Relative error of each wheel's speed that stays the same for long, as that of a worn wheel; null: by
+    """Relative error of each wheel's speed that stays the same for a long time, such as that of a worn wheel; null: by
     `realism`."""
     wheel_noise_sqrt_s: _Deviation | None = None
-    """Relative error of the way that a wheel measures in one second; in a tick it is larger by the square root of the
-    ticks in a second. Null: by `realism`."""
+    """Relative error of the distance that a wheel measures in one second; in a tick it is larger by the square root of
+    the number of ticks in a second. Null: by `realism`."""
     wheel_resolution_m_s: _Deviation = 0.001
     """Error in m/s of a wheel that hardly turns: the step from one value of the encoder to the next; an estimate."""
 
 
 class Base(Component):
-    """Odometry when sensors are read, wheel commands when actuators act."""
+    """Publishes odometry when sensors are read, and wheel commands when actuators act."""
 
     stage = ("sensor_acquire", "act_exec")
 
@@ -83,7 +83,7 @@ class Base(Component):
         self._apply_settings(self._ramp.velocity)
 
     def loop(self) -> None:
-        # Measurements count whenever they come: one that arrives between the stages must not be missing in the sum.
+        # Both stages take measurements: one that arrives between the stages must not be missing in the sum.
         for state in self.wheel_state.fresh:
             self._add(state)
         if self.clock.stage == "act_exec":
@@ -98,7 +98,7 @@ class Base(Component):
         self.wheel_command.write()
 
     def _apply_settings(self, velocity: Velocity) -> None:
-        """Takes the errors, and the limits from a velocity on."""
+        """Takes errors and limits from the settings; the ramp continues from `velocity` (robot frame)."""
         config = self.config
         self._errors = chosen(EXPECTED[config.realism], config)
         self._ramp = Ramp(
@@ -126,7 +126,7 @@ class Base(Component):
         self.odometry.value.velocity_covariance = self._covariance(wheels_m_s)
 
     def _covariance(self, wheels_m_s: Wheels) -> list[list[float]]:
-        """Returns the covariance (3, 3) of the velocity by the errors of its wheels, which each measured for a tick."""
+        """Returns the covariance (3, 3) of the velocity, from the errors of wheels that were measured for one tick."""
         config, errors = self.config, self._errors
         relative = errors.wheel_scale_sd**2 + errors.wheel_noise_sqrt_s**2 / self.clock.period_s
         standing_m2_s2 = config.wheel_resolution_m_s**2

@@ -29,20 +29,21 @@ class CameraDriverConfig(Config):
     grey: bool = False
     """Frames of one channel (gray8) instead of three (bgr8)."""
     rate_hz: float = Setting(default=0.0, ge=0.0, le=1000.0)
-    """Pictures a second requested from a device; 0: its own rate."""
+    """Pictures per second requested from a device; 0: its own rate."""
     at_end: Literal["stop", "loop", "fail"] = "stop"
-    """After the last picture of a file or folder: no more frames, from the beginning again, or the component fails."""
+    """What happens after the last picture of a file or folder: `stop`: no more frames; `loop`: the pictures begin
+    again; `fail`: the component fails."""
     retry_s: PositiveFloat = 0.5
-    """A lost device or stream is opened again after this time, which doubles with each failure."""
+    """Time until a lost device or stream is opened again; doubles with each failure."""
     longest_retry_s: PositiveFloat = 10.0
-    """Longest such time."""
+    """Longest time until a lost device or stream is opened again."""
 
 
 class CameraDriver(Component):
     """Publishes a picture of its source in each iteration.
 
-    Pictures of a file or folder depend on the tick alone: picture k, from 0, belongs to tick 1 + k * `every`. Those of
-    a device are the newest, if there is a new one.
+    A file or folder gives each tick its picture: picture k, from 0, belongs to tick 1 + k * `every`. A device or stream
+    gives its newest picture, if there is a new one.
     """
 
     stage = "sensor_acquire"

@@ -1,4 +1,4 @@
-"""Driver of the kicker: carries out kicks once ball and charge are there, and handles the ball."""
+"""Driver of the kicker: kicks once the robot has the ball and the kicker is charged, and switches ball handling."""
 
 import math
 from collections import deque
@@ -11,15 +11,15 @@ from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_drive_t, ki
 from procs.model.geometry import BOUND, clamp, plausible
 from procs.model.robot import ROBOT, RobotModel
 
-_STEEPEST_RAD = math.pi / 3  # of a lob
+_STEEPEST_RAD = math.pi / 3  # highest elevation of a lob
 _KICKS_MAX = 2**31 - 1
 """Kicks are numbered from 1 to this number, then from 1 again."""
 _UNDER_WAY_MAX = 8
-"""So many kicks may be under way to the hardware; older ones are forgotten."""
+"""Most kicks that may be under way to the hardware; older ones are forgotten."""
 
 
 class _Asked(NamedTuple):
-    """Kick that the hardware was told."""
+    """Kick that the hardware was told to carry out."""
 
     kick_id: int
     speed_m_s: float
@@ -30,17 +30,18 @@ class KickerConfig(Config):
     """Settings of the kicker's driver."""
 
     robot: RobotModel = ROBOT
-    """The robot, and with it the highest speed of a kick."""
+    """Geometry of the robot, and the highest speed of its kicks."""
     command_timeout_s: PositiveFloat = 0.25
-    """Without a newer dribble command ball handling stops; a kick that the hardware has not carried out has failed."""
+    """Ball handling stops when the newest dribble command is older than this. A kick that the hardware has not carried
+    out within this time has failed."""
 
 
 class Kicker(Component):
-    """State of the kicker when sensors are read, its drive when actuators act.
+    """Publishes the state of the kicker when sensors are read, and its drive when actuators act.
 
-    A kick waits for ball and charge until it expires; one without a speed is refused at once. It is accepted when the
-    hardware is told to kick, and done when the hardware has kicked. Kicks that this driver did not ask for do not
-    count, as those before it was restarted: their speed is unknown.
+    A kick waits for ball and charge until it expires; a kick without a speed is rejected at once. A kick is accepted
+    when the hardware is told to kick, and done when the hardware has kicked. Kicks that this driver did not ask for,
+    such as those before a restart, do not count, because their speed is unknown.
     """
 
     stage = ("sensor_acquire", "act_exec")
@@ -57,7 +58,7 @@ class Kicker(Component):
     def init(self) -> None:
         self._kicks = 0
         self._under_way: deque[_Asked] = deque(maxlen=_UNDER_WAY_MAX)  # not carried out yet, oldest first
-        self._asked_us = 0  # when the newest was told
+        self._asked_us = 0  # when the hardware was told the newest kick
         self._late = False
 
     def loop(self) -> None:
@@ -71,13 +72,13 @@ class Kicker(Component):
             self._report()
 
     def finalize(self) -> None:
-        """Leaves ball handling off and no kick waiting."""
+        """Switches ball handling off and leaves no kick waiting."""
         self.kicker_drive.value = kicker_drive_t()
         self.kicker_drive.value.kick_id = self.kicker_sensor.value.kick_id
         self.kicker_drive.write()
 
     def _kicked(self, kick_id: int) -> None:
-        """Takes the report of a kick that is under way; the hardware has passed over the kicks before it."""
+        """Counts a kick that was under way; the hardware has skipped the kicks before it."""
         while (asked := self._under_way.popleft()).kick_id != kick_id:
             pass
         self._kicks += 1
@@ -101,7 +102,7 @@ class Kicker(Component):
         sensor, drive = self.kicker_sensor.value, self.kicker_drive.value
         drive.kick_id, drive.kick_m_s, drive.elevation_rad = sensor.kick_id, 0.0, 0.0
         if sensor.ball_held and sensor.charged and (request := self.kick.take()):
-            self._fail_open("a newer kick replaced it", besides=request)
+            self._fail_open("a newer kick replaced it", spared=request)
             request.accept()
             newest_id = self._under_way[-1].kick_id if self._under_way else sensor.kick_id
             drive.kick_id = newest_id % _KICKS_MAX + 1
@@ -113,6 +114,7 @@ class Kicker(Component):
         self.kicker_drive.write()
 
     def _refuse_impossible(self) -> None:
+        """Rejects waiting kicks with an impossible speed or elevation."""
         for request in self.kick.waiting:
             speed_m_s, elevation_rad = request.value.speed_m_s, request.value.elevation_rad
             if not 0.0 < speed_m_s < BOUND:
@@ -120,12 +122,14 @@ class Kicker(Component):
             elif not plausible(elevation_rad):
                 request.reject(f"elevation_rad is {elevation_rad}; it should be from 0 to pi/3")
 
-    def _fail_open(self, reason: str, besides: Request[kick_command_t] | None = None) -> None:
+    def _fail_open(self, reason: str, spared: Request[kick_command_t] | None = None) -> None:
+        """Fails all accepted kicks except `spared`."""
         for request in self.kick.open:
-            if request is not besides:
+            if request is not spared:
                 request.fail(reason)
 
     def _is_fresh(self) -> bool:
+        """Returns whether the newest dribble command still counts; reports the first tick in which it does not."""
         age_s = self.clock.since_s(self.dribble_command.header.time_us)
         late = self.dribble_command.has_value and age_s > self.config.command_timeout_s
         if late and not self._late:

@@ -1,4 +1,4 @@
-"""Pictures as they arrive, from a device of this machine or a network stream, in a separate thread."""
+"""Live pictures from a device of this machine or a network stream, read in a separate thread."""
 
 import os
 import stat
@@ -17,6 +17,7 @@ DEVICES = Path("/dev")
 OPEN_TIMEOUT_MS = 5000
 READ_TIMEOUT_MS = 2000
 CLOSE_S = 1.0
+"""Longest wait for the thread of a source that is closed."""
 
 
 @dataclass(frozen=True)
@@ -30,17 +31,17 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Backoff:
-    """Waits before a lost source is opened again: the first one, which doubles with each failure, and the longest."""
+    """Waits before a lost source is opened again: the first, which doubles with each failure, and the longest."""
 
     first_s: float = 0.5
     longest_s: float = 10.0
 
 
 def open_stream(url: str) -> cv2.VideoCapture:
-    """Opens a stream: rtsp, http and whatever else ffmpeg knows.
+    """Opens a stream: rtsp, http or any other that ffmpeg supports.
 
     Raises:
-        SourceError: no pictures come from there.
+        SourceError: no pictures arrive from it.
     """
     limits = [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, OPEN_TIMEOUT_MS, cv2.CAP_PROP_READ_TIMEOUT_MSEC, READ_TIMEOUT_MS]
     capture = cv2.VideoCapture(url, cv2.CAP_FFMPEG, limits)
@@ -88,13 +89,18 @@ def check_device(path: Path) -> None:
 
 
 class Live:
-    """The newest picture of a source that is read all the time, and reopened whenever it is lost.
-
-    Raises:
-        SourceError: it cannot be opened at the start.
-    """
+    """Newest picture of a source that is read continuously, and opened again whenever it is lost."""
 
     def __init__(self, source: Callable[[], cv2.VideoCapture], backoff: Backoff) -> None:
+        """Opens the source and begins to read.
+
+        Args:
+            source: opens the source.
+            backoff: waiting times after the source was lost.
+
+        Raises:
+            SourceError: the source cannot be opened.
+        """
         self._source = source
         self._backoff = backoff
         self._lock = threading.Lock()

@@ -1,4 +1,4 @@
-"""Dead reckoning: a pose summed up from body velocities."""
+"""Dead reckoning: integrates body velocities to a pose."""
 
 import math
 
@@ -6,7 +6,7 @@ from procs.model.kinematics import STANDSTILL, Velocity
 
 
 class Odometry:
-    """Pose in the frame in which it was started; the heading is not wrapped."""
+    """Pose relative to the start, with the distance driven; the heading is not wrapped."""
 
     def __init__(self) -> None:
         self.x_m = 0.0
@@ -16,7 +16,7 @@ class Odometry:
         self.velocity = STANDSTILL
 
     def advance(self, velocity: Velocity, duration_s: float) -> None:
-        """Moves on at a constant velocity (robot frame): exactly along the arc of a circle."""
+        """Moves the pose at a constant velocity (robot frame), exactly along the arc of a circle."""
         self.velocity = velocity
         way_m = math.hypot(velocity.vx_m_s, velocity.vy_m_s) * duration_s
         turn_rad = velocity.omega_rad_s * duration_s

@@ -1,4 +1,4 @@
-"""Limits of speed and acceleration between the wanted velocity of a base and its wheel commands."""
+"""Limits speed and acceleration between the wanted velocity of a base and its wheel commands."""
 
 import math
 
@@ -6,9 +6,9 @@ from procs.model.kinematics import STANDSTILL, Velocity, wheels_of
 
 
 class Ramp:
-    """Follows a wanted velocity (robot frame) as fast as the limits allow, without leaving its direction.
+    """Follows a wanted velocity (robot frame) as fast as the limits allow, straight towards it.
 
-    The limits hold over the ground: a robot that turns while it drives straight on changes its velocity in its own
+    The limits apply over the ground: a robot that turns while it drives straight on changes its velocity in its own
     frame, but does not accelerate.
     """
 
@@ -29,7 +29,10 @@ class Ramp:
         self._angular_acceleration_rad_s2 = angular_acceleration_rad_s2
 
     def advance(self, wanted: Velocity, duration_s: float) -> Velocity:
-        """Returns the velocity to command for the next `duration_s`. Non-finite values count as standstill."""
+        """Returns the velocity (robot frame) to command for the next `duration_s`.
+
+        A wanted velocity with a value that is not finite counts as standstill.
+        """
         if not all(map(math.isfinite, wanted)):
             wanted = STANDSTILL
         omega = min(self._omega_rad_s, max(-self._omega_rad_s, wanted.omega_rad_s))
@@ -51,7 +54,10 @@ class Ramp:
 
 
 def within_wheel_limit(velocity: Velocity, wheel_limit_m_s: float, wheel_distance_m: float) -> Velocity:
-    """Returns the same motion, slower if need be, so that no wheel has to turn faster than it can."""
+    """Returns the velocity (robot frame), scaled down if necessary so that no wheel exceeds its limit.
+
+    `wheel_limit_m_s` is the highest rim speed, `wheel_distance_m` the distance from the robot's middle to a wheel.
+    """
     fastest_m_s = max(map(abs, wheels_of(velocity, wheel_distance_m)))
     scale = min(1.0, wheel_limit_m_s / fastest_m_s) if fastest_m_s else 1.0
     return Velocity(*(part * scale for part in velocity))

@@ -13,35 +13,36 @@ PICTURES = (".bmp", ".jpeg", ".jpg", ".pgm", ".png", ".ppm", ".tif", ".tiff", ".
 
 
 class SourceError(Exception):
-    """Pictures cannot be read; names the source, the reason, and the remedy."""
+    """Pictures cannot be read; the message names the source, the reason, and a remedy."""
 
 
 class Recorded(Protocol):
-    """Pictures that are the same at each access."""
+    """Numbered pictures, the same at each access."""
 
     def picture(self, number: int) -> Picture | None:
         """Returns picture `number`, from 0; None after the last.
 
         Raises:
-            SourceError: it is damaged.
+            SourceError: the picture is damaged.
         """
 
     @property
     def count(self) -> int:
-        """Number of pictures; 0: not known before the last was read, or endless."""
+        """Number of pictures; 0 if it is endless, or not known before the last picture was read."""
 
     def close(self) -> None:
         """Releases the source."""
 
 
 class Folder:
-    """The picture files of a folder in the order of their names, in which numbers count as numbers: 2 before 10.
-
-    Raises:
-        SourceError: the folder holds no pictures.
-    """
+    """Picture files of a folder in natural order of their names: 2 before 10."""
 
     def __init__(self, path: Path) -> None:
+        """Lists the pictures.
+
+        Raises:
+            SourceError: the folder contains no pictures.
+        """
         files = [file for file in path.iterdir() if file.suffix.lower() in PICTURES]
         self._files = sorted(files, key=lambda file: _natural(file.name))
         if not files:
@@ -64,13 +65,14 @@ class Folder:
 
 
 class Video:
-    """The frames of a video file, counted as they are decoded: jumps in the file would not be exact.
-
-    Raises:
-        SourceError: it cannot be read.
-    """
+    """Frames of a video file, counted while they are decoded, because seeking in the file would not be exact."""
 
     def __init__(self, path: Path) -> None:
+        """Opens the file.
+
+        Raises:
+            SourceError: the file cannot be read.
+        """
         self._path = path
         self._next = 0
         self._count = 0
@@ -130,4 +132,5 @@ class Endless:
 
 
 def _natural(name: str) -> list[tuple[int, str]]:
+    """Returns a sort key that compares the numbers in names as numbers."""
     return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", name)]
