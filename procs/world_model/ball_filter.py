@@ -1,16 +1,17 @@
 """Interacting multiple models of the ball: it rests, runs freely, is handled by a robot, or was hit just now.
 
-Four Kalman filters run side by side; after each step the filters exchange what they believe, by the probabilities of
-passing from one model to another (Blom and Bar-Shalom, 1988). Robots near the ball make hits and handling probable;
-elsewhere the ball runs freely, and its velocity becomes precise.
+Four Kalman filters run side by side. In each step they mix their estimates by the probabilities of passing from one
+model to another (Blom and Bar-Shalom, 1988). Robots near the ball make hits and handling probable; elsewhere the ball
+runs freely, and its velocity becomes precise.
 
-A free ball slides until its spin fits its speed, then it rolls. Sliding takes the velocity straight to one that can be
-told from the start, the settled velocity: three fifths of the velocity and two fifths of the velocity at which the ball
-would roll with its spin, for a thin shell. Each filter therefore has seven states: x, y in m, vx, vy in m/s, settled
-ux, uy in m/s, world frame, and the carpet, a factor of both decelerations, which is learnt from every slide.
+A free ball slides until its spin fits its speed, then it rolls. While it slides, its velocity changes straight towards
+the settled velocity, which is known from the start: for a thin shell, three fifths of the velocity plus two fifths of
+the velocity at which the ball would roll with its spin. Each filter has seven states: x, y in m, vx, vy in m/s, settled
+ux, uy in m/s (all in the world frame), and the carpet, a factor of both decelerations that is learnt from every slide.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,28 +24,39 @@ from procs.world_model.carpet_friction import Friction, rubbed
 _FOUR = np.arange(4)
 _MOVING = (Mode.FREE, Mode.HANDLED, Mode.HIT)
 _PLACE, _VELOCITY, _SETTLED, _CARPET = slice(0, 2), slice(2, 4), slice(4, 6), 6
-_SLIP = np.array([7 * row + column for row, column in ((2, 2), (3, 3), (4, 4), (5, 5), (2, 4), (3, 5))])
-"""Places in a flat covariance of the parts that the variance of the slip, velocity minus settled velocity, has."""
+_SLIP = np.array([STATES * row + column for row, column in ((2, 2), (3, 3), (4, 4), (5, 5), (2, 4), (3, 5))])
+"""Places in a flat covariance of the parts of the variance of the slip, which is velocity minus settled velocity."""
 _STILL = np.tile(np.eye(STATES), (MODES, 1, 1))
-"""Derivatives of states that stay, but for the velocities of a resting ball."""
+"""Derivatives of states that do not change, except the velocities of a resting ball, which are 0."""
 _STILL[Mode.RESTS, 2:6] = 0.0
 _SLOW_M_S = 0.15  # a free ball this slow is about to rest
-_UNKNOWN_SPEED_M_S = 3.0
+_UNKNOWN_SPEED_M_S = 3.0  # deviation of an unknown velocity along an axis
 _UNKNOWN_SETTLED = 0.85  # share of an unknown velocity in the settled one ...
 _UNKNOWN_SLIP_M_S = 0.8  # ... and the deviation of the rest
 _CARPET_SD = 0.18  # published decelerations differ by a third
 _CLUTTER_1_M2 = 4e-3  # density of false sightings; a sighting that is less probable does not fit
 _LEAST = 1e-6  # probability that every model keeps
-_KICK_SPEED_SD = 0.06  # relative error of a kick's speed
-_KICK_DIRECTION_SD = 0.03  # rad
-_KICK_TIME_SD_S = 0.012  # the kick lies somewhere in the tick before its report: 40 ms by the root of 12
-_MISSES = 0.005  # probability that a kick that was told did not reach the ball
-_SPIN_SD_M_S = 1.0  # deviation of the spin from that of a rolling ball, before the track is asked
-_HELD_SPIN_M_S = 0.4  # deviation of the spin of a ball in a mouth, which follows the robot late
-_LEVELS = 20  # to which the probability of a contact is rounded
-_FIRST = np.array((0.3, 0.45, 0.2, 0.05))
-_FIRST_MOVING = np.array((0.05, 0.7, 0.2, 0.05))
-_PUT_DOWN = np.array((0.97, 0.01, 0.01, 0.01))
+_KICK_SPEED_SD, _KICK_SPEED_M_S = 0.06, 0.2  # error of a kick's speed: relative part, and part of slow kicks
+_KICK_DIRECTION_SD, _KICK_ASIDE_M_S = 0.03, 0.1  # error across the kick: direction in rad, and part of slow kicks
+_KICK_TIME_SD_S = 0.012  # the kick lies anywhere in the tick before its report: 40 ms divided by the root of 12
+_MISSES = 0.005  # probability that a reported kick did not reach the ball
+_SPIN_SD_M_S = 1.0  # deviation of the spin from that of a rolling ball, before the track is considered
+_HELD_SPIN_M_S = 0.4  # deviation of the spin of a ball in a mouth, which follows the robot with a delay
+_LEVELS = 20  # number of steps to which the probability of a contact is rounded
+_FIRST = np.array((0.3, 0.45, 0.2, 0.05))  # probability of each mode: at the first sighting, ...
+_FIRST_MOVING = np.array((0.05, 0.7, 0.2, 0.05))  # ... at the first sighting of a moving ball, ...
+_PUT_DOWN = np.array((0.97, 0.01, 0.01, 0.01))  # ... and after the crew has put the ball down
+
+
+class Likeliest(NamedTuple):
+    """State of the likeliest model: place and velocity, world frame, with their variances along an axis."""
+
+    x_m: float
+    y_m: float
+    vx_m_s: float
+    vy_m_s: float
+    place_m2: float
+    velocity_m2_s2: float
 
 
 class BallFilter:
@@ -110,26 +122,23 @@ class BallFilter:
         return mean, float(self._weights @ (self._p[:, _CARPET, _CARPET] + (factors - mean) ** 2))
 
     def lie_on(self, carpet: tuple[float, float]) -> None:
-        """Takes the carpet that another track learnt, as `carpet` returns it."""
+        """Takes over the carpet of another track, as its property `carpet` returned it."""
         self._x, self._p, self._mixture = self._x.copy(), self._p.copy(), None
         self._x[:, _CARPET] = carpet[0]
         self._p[:, _CARPET] = self._p[:, :, _CARPET] = 0.0
         self._p[:, _CARPET, _CARPET] = carpet[1]
 
     def rest(self) -> None:
-        """Takes note that the ball was put down: it rests but for a small probability."""
+        """Notes that the ball was put down: it rests, except for a small probability."""
         self._weights, self._mixture = _PUT_DOWN.copy(), None
 
     @property
-    def likeliest(self) -> tuple[float, float, float, float, float, float]:
-        """The likeliest model's x, y (m), vx, vy (m/s), with the variances of place and velocity along an axis.
-
-        This takes a fraction of the time of the mixture's mean and covariance.
-        """
+    def likeliest(self) -> Likeliest:
+        """State of the likeliest model, in a fraction of the time of the mixture's mean and covariance."""
         mode = int(self._weights.argmax())
         x_m, y_m, vx_m_s, vy_m_s = self._x[mode, :4].tolist()
         xx_m2, yy_m2, vv_m2_s2, ww_m2_s2 = self._p[mode].diagonal()[:4].tolist()
-        return x_m, y_m, vx_m_s, vy_m_s, (xx_m2 + yy_m2) / 2, (vv_m2_s2 + ww_m2_s2) / 2
+        return Likeliest(x_m, y_m, vx_m_s, vy_m_s, (xx_m2 + yy_m2) / 2, (vv_m2_s2 + ww_m2_s2) / 2)
 
     def predict(
         self, duration_s: float, rolling_m_s2: float, contact: Contact = NO_CONTACT, grounded_s: float | None = None
@@ -180,14 +189,14 @@ class BallFilter:
         return motion
 
     def surely_within(self, x_m: float, y_m: float) -> bool:
-        """Returns whether all models have the ball's middle between plus and minus these places.
+        """Returns whether all models place the ball's middle within ±`x_m` and ±`y_m` of the origin.
 
         This takes a fraction of the time of the mixture's mean, which lies between those of the models.
         """
         return all(-x_m < state[0] < x_m and -y_m < state[1] < y_m for state in self._x[:, _PLACE].tolist())
 
     def stay_within(self, x_m: float, y_m: float, bounce: float) -> None:
-        """Lets a ball beyond the walls, at plus and minus these places of its middle, bounce off them.
+        """Lets a ball bounce off the walls if its middle is beyond ±`x_m` or ±`y_m`.
 
         `bounce` is the share of the speed that a wall leaves.
         """
@@ -215,9 +224,9 @@ class BallFilter:
         return True
 
     def hold(self, state: Floats, covariance: Floats) -> None:
-        """Takes the ball in a mouth: its state (4) with the covariance (4, 4), which replace the track's.
+        """Takes a ball in a mouth: its state (4) and covariance (4, 4) replace those of the track.
 
-        The error of a robot's pose stays from tick to tick, so several ticks tell no more than one. The spin follows
+        The error of a robot's pose lasts from tick to tick, so several ticks know no more than one. The spin follows
         the mouth as fast as the carpet can turn the ball.
         """
         spin_m_s, spin_m2_s2 = self._spin(state[2:], _HELD_SPIN_M_S)
@@ -225,11 +234,11 @@ class BallFilter:
         self._become(Mode.HANDLED)
 
     def kick(self, velocity_m_s: Floats, position_m: Floats | None = None, covariance_m2: Floats | None = None) -> None:
-        """Takes a kick that gave the ball about this velocity (2), world frame, unless it did not reach the ball.
+        """Takes a kick; a small probability is left that it did not reach the ball.
 
         Args:
-            velocity_m_s: (2), world frame.
-            position_m: (2), where the ball was, if that is not what the track says.
+            velocity_m_s: (2), of the ball after the kick, world frame.
+            position_m: (2), of the ball at the kick; None: as in the track.
             covariance_m2: (2, 2) of that position.
         """
         speed_m_s = float(np.hypot(*velocity_m_s))
@@ -240,8 +249,8 @@ class BallFilter:
         covariance = np.zeros((4, 4))
         covariance[:2, :2] = covariance_m2 + np.outer(along, along) * (speed_m_s * _KICK_TIME_SD_S) ** 2
         covariance[2:, 2:] = (
-            np.outer(along, along) * (_KICK_SPEED_SD * speed_m_s + 0.2) ** 2
-            + np.outer(across, across) * (_KICK_DIRECTION_SD * speed_m_s + 0.1) ** 2
+            np.outer(along, along) * (_KICK_SPEED_SD * speed_m_s + _KICK_SPEED_M_S) ** 2
+            + np.outer(across, across) * (_KICK_DIRECTION_SD * speed_m_s + _KICK_ASIDE_M_S) ** 2
         )
         before = self._moments()
         self._set(np.concatenate((position_m, velocity_m_s)), covariance, *self._spin(self.state[2:], 0.0))
@@ -287,6 +296,7 @@ class BallFilter:
         self._x, self._p = np.tile(x, (MODES, 1)), np.tile(p, (MODES, 1, 1))
 
     def _become(self, mode: Mode) -> None:
+        """Makes one model nearly certain."""
         self._mixture = None
         self._weights = np.full(MODES, _LEAST)
         self._weights[mode] = 1.0 - _LEAST * (MODES - 1)

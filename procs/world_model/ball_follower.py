@@ -1,4 +1,4 @@
-"""Feeds the ball tracker of a robot: kicks, the crew's spot, the own mouth, the own camera, then the mates."""
+"""Feeds a robot's ball tracker with kicks, the crew's spot, the own mouth, the own camera and mates, in this order."""
 
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
@@ -20,11 +20,11 @@ from procs.world_model.placed_ball import PlacedBall
 from procs.world_model.seen import Seen
 from procs.world_model.settings import STALE_S, WorldModelConfig, counts
 from procs.world_model.team import Mate
-from procs.world_model.told import ball_of, held_by
+from procs.world_model.told import IN_MOUTH_M, ball_of, held_by
 from procs.world_model.walls import Walls
 
-_IN_MOUTH_M2 = np.eye(2) * 0.03**2
-"""Covariance of a ball somewhere in the mouth."""
+_IN_MOUTH_M2 = np.eye(2) * IN_MOUTH_M**2
+"""Covariance of the place of a ball in the mouth."""
 
 
 class BallNews(NamedTuple):
@@ -49,14 +49,10 @@ class BallNews(NamedTuple):
 
 
 class BallFollower:
-    """The ball as a robot knows it; call `follow` once a tick.
-
-    Args:
-        robot: name of the robot.
-        config: settings.
-    """
+    """The ball as a robot knows it; call `follow` once a tick."""
 
     def __init__(self, robot: str, config: WorldModelConfig) -> None:
+        """Begins without a ball, for the robot with the name `robot`."""
         self.tracker = BallTracker(config.ball)
         """Track of the ball."""
         self.kicks = Kicks()
@@ -70,7 +66,7 @@ class BallFollower:
         self.apply(config)
 
     def apply(self, config: WorldModelConfig) -> None:
-        """Takes other settings; no robot has seen another ball yet."""
+        """Takes new settings; if they describe another ball, the track begins anew."""
         if self.tracker.ball != config.ball:
             self.tracker = BallTracker(config.ball)
         self._config = config
@@ -78,12 +74,12 @@ class BallFollower:
         self._mouth_m = config.mouth_m
 
     def follow(self, news: BallNews, view: OwnView, robots: Iterable[RobotRow]) -> Kick | None:
-        """Takes what a tick brings; returns the robot's own kick, if it has kicked.
+        """Takes the news of a tick; returns the robot's own kick, if it has kicked.
 
         Args:
-            news: what the tick brings.
-            view: what the robot knows of itself.
-            robots: all robots at the end of the tick.
+            news: news about the ball.
+            view: the robot's own pose and velocity.
+            robots: all robots at the end of the tick, world frame.
         """
         passed_s, tracker = news.passed_s, self.tracker
         kicked = self.kicks.own(news.kicker, view, self._mouth_m, passed_s) if news.kicker else None
@@ -104,13 +100,13 @@ class BallFollower:
         return kicked
 
     def _take_placed_ball(self, game: game_state_t) -> None:
-        """Takes the ball that the crew has put down: it acts in the tick after the state of the game says so."""
+        """Takes the ball that the crew puts down in the tick after the state of the game says so."""
         spot_m = self._placed.spot_m(game, self.tracker)
         if spot_m is not None:
             self.tracker.put_down(spot_m)
 
     def _take_held_ball(self, view: OwnView) -> None:
-        """Takes the ball that the light barrier sees: its place and, unless it is still rolling in, its velocity."""
+        """Takes the ball that the light barrier sees: its place, and its velocity unless it is still rolling in."""
         state, covariance = view.held_ball(self._mouth_m)
         if not self._held and self.tracker.known and view.rolls_in(self.tracker.track.state, state):
             self.tracker.see(Sighting(self._robot, True, state[:2], covariance[:2, :2] + _IN_MOUTH_M2))
@@ -155,6 +151,6 @@ class BallFollower:
         ]
 
     def _see(self, sightings: list[Sighting]) -> None:
-        """Hands what may be the ball in one frame to the tracker, the likeliest first."""
+        """Passes the candidates for the ball in one frame to the tracker, the likeliest first."""
         if sightings:
             self.tracker.see(*sightings)

@@ -1,4 +1,4 @@
-"""Models of the ball's motion: how likely the ball passes from one to another, and what each leaves open."""
+"""Models of the ball's motion: the probabilities of passing from one to another, and the noise of each."""
 
 from enum import IntEnum
 from functools import lru_cache
@@ -26,7 +26,7 @@ class Contact(NamedTuple):
     probability: float = 0.0
     """Probability that a robot, a post or a wall reaches the ball."""
     change_x_m_s: float = 0.0
-    """Change of the velocity by the hit, as far as the places of ball and robot tell it."""
+    """Change of the velocity by the hit, as far as the places of ball and robot determine it."""
     change_y_m_s: float = 0.0
     after_s: float = 0.0
     """Time from the beginning of the step to the hit."""
@@ -35,15 +35,15 @@ class Contact(NamedTuple):
 NO_CONTACT = Contact()
 MODES = len(Mode)
 STATES = 7
-"""x, y, vx, vy, settled ux, uy, carpet, as the filter of the ball explains them."""
+"""Number of states: x, y, vx, vy, settled ux, uy, carpet; `ball_filter` explains them."""
 _EACH = np.arange(MODES)
 _CARPET = 6
 _NOISE_M2_S3 = np.array((0.0001, 0.002, 5.0, 0.01))
-"""Spectral density of the acceleration that each model leaves open."""
+"""Spectral density of the acceleration that each model does not predict."""
 _SPIN_NOISE_M2_S3 = 0.002  # the same for the settled velocity
 _HIT_M_S = 8.0  # deviation of the velocity that a hit adds
 _HIT_SPIN_M_S = 0.3  # deviation of the settled velocity by the spin that a hit adds
-_CARPET_NOISE_1_S = 1e-5
+_CARPET_NOISE_1_S = 1e-5  # growth of the variance of the carpet's factor
 _FREE_1_S = np.array(
     (
         (0.0, 0.02, 0.003, 0.003),

@@ -6,12 +6,15 @@ Order of the sources of sightings:
 2. The robot's own camera. Mates' sightings that fit are fused, each by its covariance.
 3. Mates, when the robot does not see the ball itself; among them the more precise.
 
-A sighting that does not fit the track is dropped if a better source has confirmed the track at the same exposure.
-A moving ball that something may have touched, and that can have come there from where it was seen last, has met it: a
-new track begins, and the way tells about its velocity. Otherwise the sighting is kept as a doubt, until a better source
-confirms the track; two doubts that fit each other begin a new track, too: the ball was kicked or was placed elsewhere.
-Two doubts of one robot do not suffice if another robot has confirmed the track meanwhile. One doubt suffices if no
-robot has seen the ball for a while.
+What happens to a sighting that does not fit the track:
+
+- It is dropped if a better source has confirmed the track at the same exposure.
+- It begins a new track if the ball moves, something may have touched it, and it can have come from where it was seen
+  last. The way from there gives the new velocity.
+- Otherwise it is kept as a doubt, until a better source confirms the track. Two doubts that fit each other begin a new
+  track: the ball was kicked or placed elsewhere. Two doubts of one robot do not suffice if another robot has confirmed
+  the track meanwhile.
+- A single sighting suffices for a new track if no robot has seen the ball for a while.
 """
 
 import math
@@ -29,27 +32,29 @@ from procs.world_model.ball_modes import NO_CONTACT, Contact, Mode
 from procs.world_model.contact import Robots
 from procs.world_model.flight import Flight
 from procs.world_model.seen import Seen
+from procs.world_model.told import IN_MOUTH_M
 from procs.world_model.walls import Walls
 
 FASTEST_M_S = 13.0
 """Speed that no kick exceeds."""
-_SECOND_SIGHT_US = 300_000
-_LOST_US = 250_000  # a ball that no robot has seen for so long may have met something
-_USUAL_M_S = 11.0  # of a ball that was kicked hard
-_LATE_S = 0.03  # time by which a track lies behind a ball that was kicked
-_OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
-_AT_ONCE_US = 20_000  # robots that saw a ball within that time saw it at one place
-_MOVES_M_S = 1.0  # a slower ball that seems to jump is more likely seen by a robot that errs about its own place
+_SECOND_SIGHT_US = 300_000  # older doubts are forgotten
+_LOST_US = 250_000  # a ball that no robot has seen for longer may have met something
+_USUAL_M_S = 11.0  # speed of a ball that was kicked hard
+_LATE_S = 0.03  # time by which a track lags behind a ball that was kicked
+_OWN_BONUS = 4.0  # factor by which a sighting of the own camera outranks a mate's of the same variance
+_AT_ONCE_US = 20_000  # within this time, all robots see the ball at one place
+_MOVES_M_S = 1.0  # a slower ball that seems to jump was more likely seen by a robot that errs about its own place
 _MET = 0.003  # least probability that something has touched a ball that jumps
-_FLIES_M = 0.1  # a ball that seems to be lower in the air may lie, and be hidden in part
-_SAME_RAY_M = 0.3  # a ball that near to the ray of a sighting may be what was seen
-_BELOW_M = 0.3  # something on the ground is right below a ball in the air only if the ball's place is that certain
+_FLIES_M = 0.1  # a ball that seems to fly lower than this may lie on the ground, partly hidden
+_SAME_RAY_M = 0.3  # largest distance from the ray of a sighting at which a ball may be the thing seen
+_BELOW_M = 0.3  # largest deviation of a flying ball's place at which something on the ground is right below it
 _NEVER_US = -(1 << 60)
 _BESIDE_SPOT_M, _LIES_M_S = 0.6, 0.3  # a ball this near to the spot and this slow may lie beside a robot there
 _SPOT_M = 0.1  # deviation of the place of a ball that was put on a spot
-_HELD_M = 0.03  # deviation of a held ball's place in the mouth
-_HELD_M_S = 0.1
-_SEEMS_FURTHER = 0.06  # share of its distance by which a ball in the air that seems to lie appears too far away
+_HELD_M_S = 0.1  # deviation of a held ball's velocity in the mouth
+_ELSEWHERE_M = 0.3  # a held ball further from the track begins a new one ...
+_BEGINS_M = 0.05  # ... with this deviation of its place, besides that of the pose
+_SEEMS_FURTHER = 0.06  # share of its distance by which a low flying ball that seems to lie appears too far away
 
 
 @dataclass(frozen=True)
@@ -58,8 +63,11 @@ class Sighting:
 
     robot: str
     own: bool
+    """Whether the own camera saw it, not that of a mate."""
     position_m: Floats
+    """(2)."""
     covariance_m2: Floats
+    """(2, 2) of the position."""
     age_s: float = 0.0
     height_m: float = 0.0
     """Height of the ball's lowest point; 0 for a ball that seems to lie on the ground."""
@@ -74,9 +82,9 @@ class Sighting:
         return self.covariance_m2 + np.outer(too_far_m, too_far_m)
 
     def may_be_nearer(self, place_m: tuple[float, float]) -> bool:
-        """Returns whether the ball that seems to lie here may be one in the air at a nearer place on the same ray.
+        """Returns whether the ball that seems to lie here may be one in the air, nearer on the same ray.
 
-        Such a ball, of which a robot hides a part, is as large as one on the ground behind it.
+        A flying ball that a robot partly hides looks as large as a ball on the ground behind it.
         """
         if self.height_m > 0.0 or self.observer_m is None:
             return False
@@ -88,7 +96,7 @@ class Sighting:
 
     @property
     def weakness(self) -> float:
-        """Rank of the source: the smaller, the better."""
+        """Rank of the source; a smaller one is better."""
         return float(self.covariance_m2[0, 0] + self.covariance_m2[1, 1]) / (_OWN_BONUS if self.own else 1.0)
 
 
@@ -105,8 +113,9 @@ class Step:
     robots: Robots | None = None
     """Robots that may touch the ball."""
     timeout_us: int = 2 * US_PER_S
-    """The ball is forgotten after that time without a sighting."""
+    """The ball is forgotten after this time without a sighting."""
     walls: Walls | None = None
+    """Walls, nets and bars that limit the way of the ball."""
 
 
 @dataclass
@@ -173,18 +182,18 @@ class BallTrack:
         """
         if self.filter is None:
             self._begin(sighting)
-        elif (fitting := next(filter(self._fits, (sighting, *others)), None)) is not None:
+        elif (fitting := next(filter(self._fuse, (sighting, *others)), None)) is not None:
             self._confirm(fitting)
         elif self.time_us - self.seen_us > _LOST_US:
             self._begin(sighting)
-        elif not self._overruled(sighting) and not self._struck(sighting):
+        elif not self._overruled(sighting) and not self._begin_if_struck(sighting):
             self._doubt(sighting)
 
-    def _fits(self, sighting: Sighting) -> bool:
-        """Takes a sighting of a known ball; returns False if it does not fit.
+    def _fuse(self, sighting: Sighting) -> bool:
+        """Corrects the track of a known ball with a sighting; returns False, and changes nothing, if it does not fit.
 
-        A height that does not fit replaces the flight if the place fits: the ball has bounced, or lies. Something on
-        the ground right below a ball in the air is another thing.
+        If the place fits but not the height, the sighting replaces the flight: the ball has bounced, or lies on the
+        ground. Something on the ground right below a ball in the air is not the ball.
         """
         assert self.filter is not None
         if self.flight is None:
@@ -193,7 +202,7 @@ class BallTrack:
             self.flight = Flight.of_sight(sighting.height_m, rises=True)
             return True
         flight = self.flight.seen(sighting.height_m) or Flight.of_sight(sighting.height_m)
-        if flight is None and self.filter.likeliest[4] < _BELOW_M**2:
+        if flight is None and self.filter.likeliest.place_m2 < _BELOW_M**2:
             return False
         if not self.filter.see(sighting.position_m, sighting.of_flying_m2()):
             return False
@@ -202,9 +211,9 @@ class BallTrack:
 
     def hold(self, robot: str, state: Floats, covariance: Floats) -> None:
         """Takes a ball in the own mouth; see `BallTracker.hold`."""
-        if self.filter is None or np.hypot(*(self.filter.state[:2] - state[:2])) > 0.3:
-            self.filter = self._new(state[:2], np.eye(2) * 0.05**2 + covariance[:2, :2])
-        self.filter.hold(state, covariance + np.diag(np.square((_HELD_M, _HELD_M, _HELD_M_S, _HELD_M_S))))
+        if self.filter is None or np.hypot(*(self.filter.state[:2] - state[:2])) > _ELSEWHERE_M:
+            self.filter = self._new(state[:2], np.eye(2) * _BEGINS_M**2 + covariance[:2, :2])
+        self.filter.hold(state, covariance + np.diag(np.square((IN_MOUTH_M, IN_MOUTH_M, _HELD_M_S, _HELD_M_S))))
         self.flight = None
         self.confirmed = {robot: (self.time_us, 0.0)}
         self._note_place()
@@ -213,9 +222,9 @@ class BallTrack:
     def put_down(self, spot_m: Floats) -> None:
         """Takes a ball that the crew has put down; see `BallTracker.put_down`."""
         if self.filter is not None:
-            x_m, y_m, vx_m_s, vy_m_s, *_ = self.filter.likeliest
-            off_m = math.hypot(x_m - spot_m[0], y_m - spot_m[1])
-            if off_m < _BESIDE_SPOT_M and math.hypot(vx_m_s, vy_m_s) < _LIES_M_S:
+            ball = self.filter.likeliest
+            off_m = math.hypot(ball.x_m - spot_m[0], ball.y_m - spot_m[1])
+            if off_m < _BESIDE_SPOT_M and math.hypot(ball.vx_m_s, ball.vy_m_s) < _LIES_M_S:
                 return
         self.filter = self._new(spot_m, np.eye(2) * _SPOT_M**2)
         self.filter.rest()
@@ -255,7 +264,7 @@ class BallTrack:
         )
 
     def _contradicted(self, robot: str, since_us: int) -> bool:
-        """Returns whether another robot has confirmed the track since then: one robot may be wrong about its place."""
+        """Returns whether another robot has confirmed the track since `since_us`: one may be wrong about its place."""
         return any(name != robot and seen_us >= since_us for name, (seen_us, _) in self.confirmed.items())
 
     def _doubt(self, sighting: Sighting) -> None:
@@ -267,28 +276,29 @@ class BallTrack:
             if near and (other.robot != sighting.robot or not self._contradicted(sighting.robot, exposed_us)):
                 self._begin(other, self._velocity_to(other, exposed_us))
                 self._advance(between_s, Step(rolling_m_s2=self.ball.rolling_m_s2))
-                self._fits(sighting)
+                self._fuse(sighting)
                 self._confirm(sighting)
                 return
         self.doubts = (*self.doubts, (self.time_us, sighting))
 
-    def _struck(self, sighting: Sighting) -> bool:
+    def _begin_if_struck(self, sighting: Sighting) -> bool:
         """Begins a new track with the sighting of a moving ball that met something; returns False if it met nothing.
 
-        It can only have met what is near: far from all robots and walls another thing is seen. A ball in the air is
-        elsewhere then: where only the height does not fit, another thing may be seen, too.
+        A ball can only have met something near it: far from all robots and walls, the sighting shows another thing. A
+        ball in the air that met something is at another place: where only the height does not fit, the sighting may
+        show another thing, too.
         """
         assert self.filter is not None
-        flight, (*_, vx_m_s, vy_m_s, _, _) = self.flight, self.filter.likeliest
+        flight, ball = self.flight, self.filter.likeliest
         if self.filter.weights[Mode.HANDLED] + self.filter.weights[Mode.HIT] < _MET:
             return False
         velocity_m_s = self._velocity_to(sighting, self.time_us)
         if velocity_m_s is None or self._contradicted(sighting.robot, self.time_us - _AT_ONCE_US):
             return False
         flies = flight is not None and flight.height_m > _FLIES_M
-        if flies and sighting.may_be_nearer(self.filter.likeliest[:2]):
+        if flies and sighting.may_be_nearer((ball.x_m, ball.y_m)):
             return False
-        if not flies and math.hypot(vx_m_s, vy_m_s) <= _MOVES_M_S:
+        if not flies and math.hypot(ball.vx_m_s, ball.vy_m_s) <= _MOVES_M_S:
             return False
         if flight is not None and self.filter.copy().see(sighting.position_m, sighting.of_flying_m2()):
             return False
@@ -305,7 +315,7 @@ class BallTrack:
         return way_m / max(passed_s, _LATE_S, length_m / _USUAL_M_S)
 
     def _begin(self, sighting: Sighting, velocity_m_s: Floats | None = None, flight: Flight | None = None) -> None:
-        """Begins a new track; without a `flight`, the height of the sighting tells whether the ball flies."""
+        """Begins a new track; without a `flight`, the height of the sighting decides whether the ball flies."""
         rises = velocity_m_s is not None and (self.flight is None or self.flight.lift_m_s > 0.0)
         self.filter = self._new(sighting.position_m, sighting.covariance_m2, velocity_m_s)
         self.flight = flight or Flight.of_sight(sighting.height_m, rises)
@@ -313,6 +323,7 @@ class BallTrack:
         self._confirm(sighting)
 
     def _confirm(self, sighting: Sighting) -> None:
+        """Notes the source of a sighting in the track; drops the doubts of weaker sources."""
         weakness = sighting.weakness
         self.confirmed[sighting.robot] = (self.time_us, weakness)
         self._note_place()

@@ -1,8 +1,8 @@
-"""One ball from the sightings of several robots, each of which counts at the time of its exposure.
+"""Tracks one ball from the sightings of several robots, each of which counts at the time of its exposure.
 
-Messages of mates arrive later than frames of the own camera. A track that was taken to now cannot go back over a kick
-or a bounce, so the tracker keeps the tracks of the last moments: a late input changes the moment of its exposure, and
-the later inputs are taken again.
+Messages of mates arrive later than frames of the own camera, and a track cannot go back in time over a kick or a
+bounce. The tracker therefore keeps the tracks of the last moments: a late input changes the track at its own time, and
+all later inputs are applied again.
 """
 
 from bisect import bisect_left
@@ -21,8 +21,8 @@ from procs.world_model.seen import Seen
 from procs.world_model.walls import Walls
 
 _KEPT_US = 400_000  # older inputs are not used
-_LONGEST_STEP_US = 100_000
-_OBSERVER_US = 500_000
+_LONGEST_STEP_US = 100_000  # longest step of the filter
+_OBSERVER_US = 500_000  # a robot observes the ball for so long after a sighting
 _PUT_DOWN, _BY_OWN_CAMERA, _BY_MATE, _HELD, _KICKED = range(5)  # order of the inputs of one moment
 
 _Input = Callable[[BallTrack], None]
@@ -134,8 +134,8 @@ class BallTracker:
 
         Args:
             velocity_m_s: (2), world frame.
-            age_s: time since the kick; negative: so long after the last tick, within the one that `advance` ends.
-            mouth: place of the ball at the kick (0 or 1), if it is not the track's: the mouth of a mate.
+            age_s: time since the kick; a negative one lies after the last tick, within the step of the next `advance`.
+            mouth: place of the ball at the kick (0 or 1), such as the mouth of a mate; 0: that of the track.
             lift_m_s: velocity upwards.
         """
         self._take(_KICKED, age_s, lambda track: track.kick(velocity_m_s, lift_m_s, mouth))
@@ -148,7 +148,7 @@ class BallTracker:
         self._take(_PUT_DOWN, 0.0, lambda track: track.put_down(spot_m))
 
     def _take(self, rank: int, age_s: float, taken: _Input) -> None:
-        """Keeps an input at its time, unless that is too long ago."""
+        """Keeps an input of `age_s` ago, unless that is too old."""
         time_us = self._now_us - round(age_s * US_PER_S)
         times_us = [moment.track.time_us for moment in self._moments]
         place = bisect_left(times_us, time_us)
@@ -167,13 +167,14 @@ class BallTracker:
         self._current = None
 
     def _at_now(self) -> BallTrack:
+        """Returns the track now, computed once a change."""
         if self._current is None:
             self._settle()
             self._current = self._moved(self._moments[-1].track, self._now_us)
         return self._current
 
     def _settle(self) -> None:
-        """Takes the inputs of all moments from the first one that changed."""
+        """Applies the inputs of all moments again, from the first one that changed."""
         for place in range(self._sound, len(self._moments)):
             moment = self._moments[place]
             moment.track = self._moved(self._moments[place - 1].track, moment.track.time_us)

@@ -1,8 +1,8 @@
-"""Kalman filters side by side: n states that begin with x, y (m), with position sightings, in a few array operations.
+"""Kalman filters side by side: corrects n states with position sightings in a few array operations.
 
-Where sightings have an age, states go on with vx, vy (m/s), ax, ay (m/s²).
+States begin with x, y (m). If sightings have an age, states continue with vx, vy (m/s), ax, ay (m/s²).
 
-The formulas are those of filterpy's `predict` and `update`, with which the tests compare them.
+The formulas are those of filterpy's `predict` and `update`; the tests compare them.
 """
 
 from functools import lru_cache
@@ -36,8 +36,8 @@ def innovation(
     Args:
         states: (n, k).
         covariances: (n, k, k) of the states.
-        positions_m: (n, 2) or (2), sighted.
-        spreads_m2: (n, 2, 2) or (2, 2), covariances of the sightings.
+        positions_m: (n, 2) or (2) of the sightings.
+        spreads_m2: (n, 2, 2) or (2, 2) of the sightings: their covariances.
         age_s: time since the exposure.
     """
     predicted_m, gains, spreads = seen_at(states, covariances, age_s)
@@ -45,7 +45,7 @@ def innovation(
 
 
 def innovation_of(gains: Floats, differences_m: Floats, inverses: Floats, determinants: Floats) -> Innovation:
-    """Returns the innovation of differences (..., 2), with what `inverted` returns for their covariances."""
+    """Returns the innovation of differences (..., 2), given the results of `inverted` for their covariances."""
     weighted = (inverses @ differences_m[..., None])[..., 0]
     return Innovation(gains, inverses, weighted, (differences_m * weighted).sum(axis=-1), determinants)
 
@@ -65,13 +65,13 @@ def seen_at(states: Floats, covariances: Floats, age_s: float) -> tuple[Floats, 
 
 
 def places_at(states: Floats, age_s: float) -> Floats:
-    """Returns the positions (n, 2) that belong to states (n, k) a while ago."""
+    """Returns the positions (n, 2) that belong to states (n, k) `age_s` ago."""
     return states @ _sight(age_s).T if age_s else states[:, :2]
 
 
 @lru_cache(maxsize=64)
 def _sight(age_s: float) -> Floats:
-    """Returns the matrix (2, 6) from states to the places a while ago; cached."""
+    """Returns the matrix (2, 6) from states to the positions `age_s` ago; cached."""
     return np.asarray(np.kron(np.array((1.0, -age_s, age_s**2 / 2)), np.eye(2)), np.float64)
 
 

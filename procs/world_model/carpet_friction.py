@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 from procs.world_model.ball_modes import Mode
 
-_TINY = 1e-9
-_LEAST_CARPET = 0.3  # factor of the decelerations
+_TINY = 1e-9  # avoids divisions by 0
+_LEAST_CARPET = 0.3  # least factor of the decelerations
 
 
 class Friction(NamedTuple):
@@ -25,12 +25,12 @@ def rubbed(
 ) -> tuple[list[float], list[float]]:
     """Lets the carpet act on a moving ball for a step.
 
-    The direction of the slip is that of a normal distribution: it fades where the slip is uncertain, and where the slip
-    ends within the step. In a mouth friction turns the ball instead of braking it.
+    Friction acts against the slip, which is velocity minus settled velocity. It is weaker where the slip is uncertain,
+    and where the slip ends within the step. In a mouth, friction turns the ball instead of braking it.
 
     Args:
         mode: the model.
-        state: (7).
+        state: (7), as `ball_filter` explains it.
         slip_m2_s2: variance of the slip along an axis.
         duration_s: the step.
         grounded_s: part of the step in which the carpet acts on the ball.

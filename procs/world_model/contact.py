@@ -1,4 +1,4 @@
-"""Robots near the ball: it keeps its motion while none is within reach, and cannot run on through one."""
+"""Contacts of the ball with robots: it keeps its motion while no robot is within reach, and cannot pass through one."""
 
 import math
 from collections.abc import Iterable
@@ -9,13 +9,13 @@ from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_modes import NO_CONTACT, Contact
 from procs.world_model.flight import Flight
 
-_HULL_M = 0.03  # from the distance in the mouth to that beside it
+_HULL_M = 0.03  # by how much the touch distance beside the mouth exceeds the one in the mouth
 _HULL_SD_M = 0.03  # deviation of the distance at which a robot touches the ball: its mouth is flat, its back round
-_MOST_M = 0.2  # a ball whose place is less certain than that is treated as if it were
-_FLEES_M_S = 0.5  # a ball that surely leaves a robot faster than that was kicked, and is not touched again
+_MOST_M = 0.2  # largest deviation of the ball's place that counts; a less certain place is treated like this
+_FLEES_M_S = 0.5  # a ball that surely leaves a robot faster than this was kicked, and is not touched again
 _NEAR_M = 2.5  # robots further from the ball cannot touch it, not even if it was kicked in the last ticks
-_RAMS_M_S = 2.0  # a ball that approaches a robot slower is handled by it
-_DENT_M = 0.08  # a ball that would be nearer than the touch by so much cannot have run on
+_RAMS_M_S = 2.0  # a robot handles a ball that approaches more slowly
+_DENT_M = 0.08  # a ball that would be this much inside the touch distance cannot have run on
 _SURELY_OVER = 1e-3  # probability of being low below which a ball passes over robots
 _BOUNCE = 0.2  # share of the speed towards a robot with which a ball leaves it, on average over mouths and hulls
 
@@ -29,9 +29,9 @@ class Robots:
 
     rows: tuple[RobotRow, ...]
     touch_m: float
-    """Distance of the middles of robot and ball when they touch."""
+    """Distance between the middles of robot and ball when they touch."""
     height_m: float
-    """A ball that flies higher passes over them."""
+    """Height of the robots; a ball that flies higher passes over them."""
 
     @classmethod
     def near(cls, ball: BallFilter, robots: Iterable[RobotRow], touch_m: float, height_m: float) -> "Robots":
@@ -41,9 +41,9 @@ class Robots:
         return cls(tuple(near), touch_m, height_m)
 
     def contact(self, ball: BallFilter, duration_s: float, before_s: float, flight: Flight | None = None) -> Contact:
-        """Returns their effect on the ball in a step that begins `before_s` before the end of the tick.
+        """Returns the robots' effect on the ball in a step that begins `before_s` before the end of the tick.
 
-        A ball that rises may be higher than a robot when it gets there, and one that falls may be lower.
+        The height of a ball in the air counts at the moment when it reaches a robot, because it rises or falls.
         """
         if not self.rows or (self._flies_over(flight, 0.0) and self._flies_over(flight, duration_s)):
             return NO_CONTACT
@@ -68,7 +68,7 @@ class Robots:
         return hit._replace(probability=probability)
 
     def _is_low(self, flight: Flight | None, after_s: float) -> float:
-        """Returns the probability that a ball is not above the robots after a part of the step."""
+        """Returns the probability that a ball is not above the robots `after_s` after the beginning of the step."""
         return 1.0 if flight is None else flight.probably_below(self.height_m, after_s)
 
     def _flies_over(self, flight: Flight | None, after_s: float) -> bool:
@@ -83,13 +83,13 @@ class Robots:
         spread_m: float,
         flies: bool,
     ) -> Contact:
-        """Returns the hit of a robot by a ball that approaches.
+        """Returns the contact of a robot with a ball that approaches it.
 
-        Whether a ball on the ground runs on is seen by how far inside the robot it would be. A ball in the air may rise
-        above the robot meanwhile: its way decides, in the step in which it touches.
+        A ball on the ground was hit if it would otherwise be inside the robot after the step. A ball in the air may
+        rise above the robot meanwhile, so its hit counts in the step in which its way first touches the robot.
 
         Args:
-            away: from the robot to the ball, m.
+            away: vector from the robot to the ball, m.
             past: velocity of the ball as the robot sees it, m/s.
             closing_m_s: part of that velocity towards the robot.
             duration_s: the step.

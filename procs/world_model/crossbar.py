@@ -1,4 +1,4 @@
-"""The crossbars of the goals, off which a ball in the air bounces where it is as high as they are."""
+"""Crossbars of the goals, off which a ball in the air bounces if it is as high as they are."""
 
 import math
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from procs.world_model.ball_modes import NO_CONTACT, Contact
 from procs.world_model.flight import Flight
 
 _BOUNCE = 0.7  # share of the speed towards a bar with which a ball leaves it
-_MOST_M = 0.3  # a ball whose place is less certain than that is treated as if it were
+_MOST_M = 0.3  # largest deviation of the ball's place that counts; a less certain place is treated like this
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Crossbars:
         return cls(field.goal_plane_m, field.goal_width_m / 2, low_m, field.bar_top_m)
 
     def contact(self, ball: BallFilter, flight: Flight, duration_s: float) -> Contact:
-        """Returns the effect of a bar on a ball in the air in a step: it bounces back if it is as high as the bar."""
+        """Returns the effect of a bar on a ball in the air in a step: a ball as high as the bar bounces back."""
         x_m, y_m, vx_m_s, vy_m_s, place_m2, _ = ball.likeliest
         side = math.copysign(1.0, vx_m_s)
         ahead_m = self.x_m - side * x_m

@@ -1,4 +1,4 @@
-"""Height of a ball in the air: a Kalman filter of height and lift, whose parabola ends on the carpet."""
+"""Height of a ball in the air: a Kalman filter of height and lift, with bounces where the parabola meets the carpet."""
 
 import math
 from dataclasses import dataclass
@@ -8,13 +8,13 @@ from procs.model.normal import normal_cdf
 
 _GRAVITY_M_S2 = 9.81
 _SEEN_M = 0.03  # deviation of a height that follows from the ball's size
-_LOW_M = 0.02  # height of a ball that seems to lie on the ground although it flies
-_LOB_M_S, _LOB_SD_M_S = 4.0, 1.5  # lift of a lob that was kicked a moment ago
-_UNKNOWN_LIFT_M_S = 4.0
+_LOW_M = 0.02  # height of a flying ball that seems to lie on the ground
+_LOB_M_S, _LOB_SD_M_S = 4.0, 1.5  # lift of a lob that was kicked a moment ago, and its deviation
+_UNKNOWN_LIFT_M_S = 4.0  # deviation of an unknown lift
 _KICK_SHARE = 0.08  # relative deviation of a kick's lift
 _BOUNCE_SHARE = 0.1  # relative deviation of the lift after a bounce
-_NOISE_M2_S3 = 0.05
-_FITS = 4.0  # deviations within which a height fits
+_NOISE_M2_S3 = 0.05  # spectral density of the vertical acceleration besides gravity
+_FITS = 4.0  # number of deviations within which a height fits
 _LEAST_LIFT_M_S = 0.3  # a kick with less lift rolls
 
 
@@ -39,7 +39,7 @@ class Flight:
     def of_sight(cls, height_m: float, rises: bool = False) -> "Flight | None":
         """Returns the flight of a ball that was just seen for the first time, or None if it lies on the ground.
 
-        `rises` tells that the ball was on the ground a moment ago.
+        `rises` states that the ball was on the ground a moment ago.
         """
         if height_m <= 0.0:
             return None
@@ -47,7 +47,7 @@ class Flight:
         return cls(height_m, lift_m_s, _SEEN_M**2, 0.0, deviation_m_s**2)
 
     def moved(self, duration_s: float, ball: BallModel) -> "tuple[Flight | None, float]":
-        """Returns the flight after a step, None once the ball has landed, and how long it was on the ground meanwhile.
+        """Returns the flight after a step, or None once the ball has landed, and the time in s on the ground meanwhile.
 
         The ball bounces until its lift is small.
         """
@@ -64,7 +64,7 @@ class Flight:
         return after.moved(duration_s - lands_s, ball)
 
     def seen(self, height_m: float) -> "Flight | None":
-        """Returns the flight after a sighting at a height, 0 for a ball that seems to lie; None if it does not fit."""
+        """Returns the flight after a sighting at a height (0: the ball seems to lie); None if that does not fit."""
         apart_m = (height_m if height_m > 0.0 else _LOW_M) - self.height_m
         variance_m2 = self.height_m2 + _SEEN_M**2
         if apart_m * apart_m > _FITS**2 * variance_m2:
@@ -79,7 +79,7 @@ class Flight:
         )
 
     def probably_below(self, height_m: float, duration_s: float) -> float:
-        """Returns the probability that the ball will be lower than that after a step in the air."""
+        """Returns the probability that the ball will be lower than `height_m` after a step in the air."""
         then = self._in_the_air(duration_s)
         return normal_cdf((height_m - then.height_m) / math.sqrt(then.height_m2))
 

@@ -1,12 +1,12 @@
-"""Pace of a camera: when its next frame comes."""
+"""Pace of a camera: the time until its next frame."""
 
 from collections import deque
 from itertools import pairwise
 
 from procs.model.units import US_PER_S
 
-_FRAMES = 4  # the shortest of the times between them counts: others are those of lost frames
-_LATE = 1.4  # the next frame comes within that many such times
+_FRAMES = 4  # newest frames; the shortest time between two of them counts, as lost frames make others longer
+_LATE = 1.4  # multiple of this time within which the next frame comes
 _LONGEST_S = 1.0  # a camera that is silent for longer has no pace
 
 

@@ -1,4 +1,4 @@
-"""Kicks that a robot knows of: its own, which its mates have to hear of, and those that mates tell."""
+"""Kicks that a robot knows: its own, which it has to tell its mates, and those of its mates."""
 
 import math
 from collections.abc import Iterable
@@ -16,7 +16,7 @@ from procs.world_model.seen import Seen
 from procs.world_model.team import Mate
 from procs.world_model.told import mouth_of
 
-_MESSAGES = 2  # tell mates of a kick, in this tick and the next, as radio may lose one
+_MESSAGES = 2  # number of messages that tell mates of a kick, because the radio may lose one
 _OLDEST_S = 0.5  # older kicks of mates are not used
 
 
@@ -54,8 +54,8 @@ class Kicks:
     def own(self, kicker: kicker_state_t, view: OwnView, mouth_m: float, passed_s: float) -> Kick | None:
         """Returns the robot's own new kick, if there is one, at the middle of the `passed_s` since the last tick.
 
-        The first number tells of kicks long ago; one that falls is that of a driver that was restarted. A robot that is
-        lost does not know where it kicks.
+        The first number of kicks counts kicks long ago, and a number that falls comes from a restarted driver; both
+        report no new kick. Neither does a lost robot, which does not know in which direction it kicked.
         """
         known, self._own = self._own, kicker.kicks
         if (
@@ -71,7 +71,7 @@ class Kicks:
     def of_mates(self, told: Iterable[tuple[team_message_t, Mate]], now_us: int, mouth_m: float) -> list[Kick]:
         """Returns the new kicks in messages of mates that know their places.
 
-        `mouth_m` is from a robot's middle to a held ball's.
+        `mouth_m` is the distance from a robot's middle to that of a held ball.
         """
         found = []
         for message, mate in told:

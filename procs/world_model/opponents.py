@@ -8,7 +8,7 @@ from procs.world_model.robot_tracks import any_near, without_known
 from procs.world_model.seen import Seen
 from procs.world_model.team import Places
 
-_DRIFTS_S = 0.5  # a mate that is silent for longer may be anywhere, and explains only what stands near its last place
+_DRIFTS_S = 0.5  # a mate that is silent for longer may be anywhere, so it explains only what is near its last place
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class OpponentSettings:
 def strangers(seen: Seen, team: Places, seen_s: float, settings: OpponentSettings) -> Seen:
     """Returns the obstacles that are on the field, seen well enough, and not robots of the team.
 
-    `seen_s` is the time of the exposure: mates are compared where they were then.
+    `seen_s` is the time of the exposure, at which the places of mates are compared.
     """
     if not len(seen.positions_m):
         return seen
@@ -41,7 +41,7 @@ def strangers(seen: Seen, team: Places, seen_s: float, settings: OpponentSetting
             for (x_m, y_m), (xx_m2, yy_m2) in zip(places_m, spreads_m2, strict=True)
         ]
     )
-    # Mates hardly ever name a robot of the team, as they have left them out themselves.
+    # Obstacles in messages of mates are seldom near the team: the mates have left out robots of the team themselves.
     if any_near(places_m, spreads_m2, team.rows_at(seen_s, _DRIFTS_S), settings.mate_radius_m):
         chosen &= without_known(seen.positions_m, covariances_m2, *team.at(seen_s, _DRIFTS_S), settings.mate_radius_m)
     return seen if chosen.all() else seen.only(chosen)

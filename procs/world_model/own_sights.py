@@ -1,4 +1,4 @@
-"""The ball in the newest frames of the own camera, which counts more than the word of a mate."""
+"""The ball in the newest frames of the own camera, which outweighs the claim of a mate to hold the ball."""
 
 import math
 from collections import deque
@@ -7,25 +7,25 @@ from collections.abc import Sequence
 from procs.model.units import US_PER_S
 from procs.world_model.ball_track import FASTEST_M_S, Sighting
 
-_FRAMES = 2  # a single one may show another thing
-_AGE_US = 300_000  # older frames tell nothing
-_ELSEWHERE_M = 1.0  # the places of two robots err by less
+_FRAMES = 2  # number of frames that have to agree; a single one may show another thing
+_AGE_US = 300_000  # older frames do not count
+_ELSEWHERE_M = 1.0  # the errors of two robots' places are smaller together
 
 
 class OwnSights:
-    """Says whether the own camera sees the ball elsewhere than a mate that believes to hold it."""
+    """Decides whether the own camera sees the ball away from a mate that believes it holds the ball."""
 
     def __init__(self) -> None:
         self._frames: deque[tuple[int, list[tuple[float, float]]]] = deque(maxlen=_FRAMES)
 
     def note(self, exposed_us: int, sightings: Sequence[Sighting]) -> None:
-        """Takes the things of a frame that may be the ball."""
+        """Takes the candidates for the ball in a frame."""
         self._frames.append((exposed_us, [(each.position_m[0], each.position_m[1]) for each in sightings]))
 
     def contradict(self, place_m: tuple[float, float], told_us: int, now_us: int) -> bool:
-        """Returns whether the newest frames show the ball, and far from the place that a mate told at `told_us`.
+        """Returns whether the newest frames show the ball far from `place_m`, which a mate stated at `told_us`.
 
-        A frame without a ball tells nothing: a robot may hide it.
+        A frame without a ball does not contradict: a robot may hide the ball.
         """
         if len(self._frames) < _FRAMES or now_us - self._frames[0][0] > _AGE_US:
             return False

@@ -16,8 +16,8 @@ from procs.world_model.seen import MOST_OBSTACLES, Seen
 from procs.world_model.team import Mate, PlaceRow
 
 _FASTEST = (8.0, 8.0, 15.0)  # m/s, m/s, rad/s: a pose that changes faster was corrected
-_TRAIL_S = 0.5  # as old as the oldest sightings that count
-_ROLLS_IN_M_S = 0.5  # a slower ball is as good as held
+_TRAIL_S = 0.5  # poses are kept for the age of the oldest sightings that count
+_ROLLS_IN_M_S = 0.5  # a ball that rolls in more slowly counts as held
 
 
 class _Past(NamedTuple):
@@ -30,7 +30,7 @@ class _Past(NamedTuple):
     """(3): its change in a second, in the tick that led to it."""
 
     def older(self, by_s: float) -> "_Past":
-        """Returns the same a while later."""
+        """Returns the same pose, `by_s` older."""
         return _Past(self.age_s + by_s, self.pose, self.rates)
 
 
@@ -52,7 +52,7 @@ class OwnView:
             pose: newest pose.
             odometry: newest odometry.
             known: False if the pose is an old one.
-            shake_s_m: growth of the camera's deviation with speed, as a share of the standing camera's for each m/s.
+            shake_s_m: growth of the camera's deviation for each m/s of the robot, as a share of that at a standstill.
             before: the view `passed_s` ago.
             passed_s: see `before`.
         """
@@ -96,14 +96,14 @@ class OwnView:
     def mates(
         self, percepts: obstacle_percepts_t, age_s: float, team: int, known: Sequence[PlaceRow], within_m: float
     ) -> Seen:
-        """Returns the robots of percepts captured `age_s` ago that show the colour of a team, as far as they are new.
+        """Returns the robots of percepts captured `age_s` ago that show the colour of a team and are not known yet.
 
         Args:
             percepts: the obstacles.
             age_s: time since their exposure.
             team: number of the team; 0: not known.
-            known: robots of the team; what is seen near them, and that is nearly all, is left out at little cost.
-            within_m: distance that counts as near.
+            known: robots of the team; robots seen near them are left out at little cost, and these are nearly all.
+            within_m: largest distance that counts as near.
         """
         seen = [one for one in percepts.obstacles if one.team == team] if team else []
         if not (seen and self.localized):
@@ -134,9 +134,9 @@ class OwnView:
         )
 
     def held_ball(self, mouth_m: float) -> tuple[Floats, Floats]:
-        """Returns the state (4) of a ball in the mouth, and the covariance (4, 4) that the own pose adds to it.
+        """Returns the state (4) of a ball in the mouth, world frame, and its covariance (4, 4) by the own pose.
 
-        The ball moves and turns with the robot; `mouth_m` is from the robot's middle to the ball's.
+        The ball moves and turns with the robot; `mouth_m` is the distance from the robot's middle to that of the ball.
         """
         offset_m = rotation(float(self.pose[2])) @ (mouth_m, 0.0)
         turning_m_s = self.omega_rad_s * np.array((-offset_m[1], offset_m[0]))
@@ -147,9 +147,10 @@ class OwnView:
         return state, covariance
 
     def rolls_in(self, ball: Floats, held: Floats) -> bool:
-        """Returns whether a ball (4) comes to the mouth, where a held ball has the state (4), and has not touched it.
+        """Returns whether a ball with the state (4) rolls towards the mouth and has not touched it yet.
 
-        The light barrier sees such a ball a moment before the mouth stops it.
+        `held` is the state (4) of a held ball. The light barrier sees a ball that rolls in a moment before the mouth
+        stops it.
         """
         ahead = rotation(float(self.pose[2])) @ (1.0, 0.0)
         gap_m, away_m_s = ahead @ (ball[:2] - held[:2]), ahead @ (ball[2:] - held[2:])
@@ -167,15 +168,17 @@ class OwnView:
         return past.pose - (age_s - past.age_s) * past.rates
 
     def _from_here(self, seen: Seen, age_s: float) -> Seen:
+        """Transforms things seen `age_s` ago from the robot frame to the world frame."""
         pose = self._at(age_s)
         shaken_m2 = seen.by_sight_m2 * self._shake
         return Seen(*to_world(pose, self.covariance, seen.positions_m, shaken_m2), seen.radii_m)
 
 
 def _rates(before: Floats, now: Floats, passed_s: float) -> tuple[float, float, float]:
-    """Returns the change (3) of a pose in a second.
+    """Returns the rates of change of a pose: m/s, m/s, rad/s.
 
-    Wheels that slip, as in a scrum, turn at up to 4 rad/s while the robot does not; the pose follows the gyro.
+    They are better than the wheels' velocity: in a scrum, slipping wheels report up to 4 rad/s while the robot does
+    not turn, whereas the pose follows the gyro.
     """
     (x_m, y_m, heading_rad), (before_x_m, before_y_m, before_rad) = now.tolist(), before.tolist()
     return (x_m - before_x_m) / passed_s, (y_m - before_y_m) / passed_s, wrap_rad(heading_rad - before_rad) / passed_s

@@ -1,4 +1,4 @@
-"""The ball of a set piece: the crew puts it on the spot that the state of the game tells."""
+"""The ball of a set piece, which the crew puts on the spot that the state of the game states."""
 
 import math
 
@@ -12,7 +12,7 @@ from procs.world_model.ball_tracker import BallTracker
 
 
 class PlacedBall:
-    """Tells where the ball lies because the crew has put it there."""
+    """Finds out when and where the crew puts the ball down."""
 
     def __init__(self) -> None:
         self._stopped_s = math.inf  # how long the game had been stopped in the last state; infinite: it was running
@@ -22,7 +22,7 @@ class PlacedBall:
 
         Args:
             game: the newest state of the game.
-            ball: the ball, which is asked only at set pieces whether it is known: a prediction has to tell.
+            ball: the tracker of the ball; only set pieces ask whether the ball is known, as that takes a prediction.
         """
         begins = game.stopped and game.time_in_state_s < self._stopped_s
         self._stopped_s = game.time_in_state_s if game.stopped else math.inf

@@ -1,4 +1,4 @@
-"""The robot that has the ball, as far as a robot knows."""
+"""Determines which robot has the ball, as far as a robot knows."""
 
 import math
 from collections.abc import Iterable
@@ -8,7 +8,7 @@ from procs.world_model.team import Mate
 
 OPPONENT = "?"
 """Holder of a ball at an opponent, whose name no robot of the team knows."""
-_TOLD_S = 0.3  # a mate's word that it holds the ball is believed for so long
+_TOLD_S = 0.3  # a mate's statement that it holds the ball is believed for so long
 _NEAR_M = 0.9  # an opponent further from the ball does not have it, however uncertain the ball's place is
 _LOW_M = 0.3  # a ball that is higher above the carpet flies over an opponent's mouth
 

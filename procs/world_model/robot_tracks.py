@@ -1,7 +1,7 @@
-"""Tracks of the robots that are seen as obstacles: a Kalman filter for each, all in one batch.
+"""Tracks of the robots that are seen as obstacles: one Kalman filter each, all in one batch.
 
-Robots drive with an acceleration that lasts a while (Singer, 1970): without it as a state, tracks lag behind robots
-that start, and lead those that brake.
+The acceleration of a robot lasts for a while (Singer, 1970), so it is a state of the filter. Without it, tracks would
+lag behind robots that start and run ahead of robots that brake.
 """
 
 import math
@@ -21,10 +21,11 @@ _STATES = 6
 _ACCELERATION_M_S2 = 3.0  # deviation of a robot's acceleration along an axis
 _LASTS_S = 0.35  # time constant of an acceleration
 _NOISE_M2_S3 = 0.1  # spectral density of accelerations that do not last
-_UNKNOWN_SPEED_M_S = 1.5
+_UNKNOWN_SPEED_M_S = 1.5  # deviation of an unknown velocity along an axis
 _GATE = 9.2  # chi-square, 2 degrees of freedom, 99 %
-_FARTHEST_M = 1.5
-_SAME = 0.9  # of the width of a robot: the middles of two robots are further apart
+_FARTHEST_M = 1.5  # largest distance between a track and its sighting
+_NO_PAIR = 1e3  # cost of a pair that does not fit, above all costs of pairs that fit
+_SAME = 0.9  # as a share of the width of a robot; the middles of two robots are further apart
 _AXES = np.arange(_STATES)
 _NONE: Indices = np.zeros(0, np.intp)
 
@@ -64,7 +65,7 @@ class RobotTracks:
         return np.flatnonzero(self._sightings > 1)
 
     def rows_after(self, duration_s: float) -> list[RobotRow]:
-        """Returns where the robots will be, as far as the ball may meet them."""
+        """Returns places and velocities of the robots after `duration_s`, for contacts with the ball."""
         if not len(self):
             return []
         variances_m2 = (self._p[:, 0, 0] + self._p[:, 1, 1]) / 2
@@ -76,8 +77,8 @@ class RobotTracks:
     def predict(self, duration_s: float, timeout_s: float) -> None:
         """Moves all tracks on by `duration_s`; drops those without a sighting for `timeout_s`.
 
-        A robot that was seen once may be a ghost: it is dropped after a quarter of that time, if the next frame has
-        come by then.
+        A robot that was seen only once may be a ghost: it is dropped after a quarter of `timeout_s`, but not before the
+        next frame has come.
         """
         self.ages_s = self.ages_s + duration_s
         once_s = np.maximum(timeout_s / 4, self._again_s)
@@ -89,7 +90,7 @@ class RobotTracks:
         self._p = motion @ self._p @ motion.T + noise
 
     def see(self, positions_m: Floats, covariances_m2: Floats, age_s: float = 0.0, next_s: float = 0.0) -> None:
-        """Takes one robot's sightings of a frame, captured `age_s` ago, each of a different robot.
+        """Takes the sightings that one robot made in one frame, captured `age_s` ago, each of a different robot.
 
         Args:
             positions_m: (m, 2), world frame.
@@ -113,7 +114,7 @@ class RobotTracks:
     def _assign(
         self, positions_m: Floats, covariances_m2: Floats, age_s: float
     ) -> tuple[Indices, Indices, Innovation | None]:
-        """Returns the tracks that are seen, the sighting of each, and how they differ; None if no track is seen."""
+        """Returns the tracks that are seen (k), the sighting of each (k), and their differences; None without any."""
         if not len(self):
             return _NONE, _NONE, None
         predicted_m, gains, spreads = seen_at(self._x, self._p, age_s)
@@ -133,6 +134,7 @@ class RobotTracks:
         return tracks, seen, None
 
     def _begin(self, positions_m: Floats, covariances_m2: Floats, age_s: float, next_s: float) -> None:
+        """Begins a track from each sighting; the arguments are those of `see`."""
         count = len(positions_m)
         states, covariances = np.zeros((count, _STATES)), np.zeros((count, _STATES, _STATES))
         states[:, :2], covariances[:, :2, :2] = positions_m, covariances_m2
@@ -148,7 +150,7 @@ class RobotTracks:
         self._begun += count
 
     def _join(self) -> None:
-        """Drops the less seen of two tracks in one place; of equals, the younger."""
+        """Drops one of two tracks in one place: the one with fewer sightings; of equals, the younger."""
         places_m, same_m2 = self._x[:, :2].tolist(), (_SAME * self.robot_width_m) ** 2
         if not any(
             (x_m - other_x_m) * (x_m - other_x_m) + (y_m - other_y_m) * (y_m - other_y_m) < same_m2
@@ -190,7 +192,7 @@ def _best_pairs(apart_m: Floats, spreads_m2: Floats) -> tuple[list[int], list[in
     """
     surprises = _surprises(apart_m, spreads_m2)
     near = (surprises <= _GATE) & ((apart_m**2).sum(axis=2) <= _FARTHEST_M**2)
-    rows, columns = linear_sum_assignment(np.where(near, surprises, 1e3))
+    rows, columns = linear_sum_assignment(np.where(near, surprises, _NO_PAIR))
     fits = near[rows, columns]
     return rows[fits].tolist(), columns[fits].tolist()
 
@@ -201,7 +203,7 @@ def any_near(
     known: Sequence[PlaceRow],
     within_m: float,
 ) -> bool:
-    """Returns whether `without_known` may take a sighting away; False is certain, and found much faster.
+    """Returns whether `without_known` may remove a sighting. False is certain, and found much faster than by a call.
 
     A squared Mahalanobis distance is at least the squared distance divided by the trace of the covariance.
 
@@ -224,11 +226,11 @@ def any_near(
 def without_known(
     positions_m: Floats, covariances_m2: Floats, known_m: Floats, known_m2: Floats, within_m: float
 ) -> Flags:
-    """Returns flags (m) of the sightings that remain when each known robot takes its own sighting away.
+    """Returns flags (m) of the sightings that remain when the sighting of each known robot is removed.
 
-    A known robot takes away one sighting at most, so that an opponent beside a mate stays. Robots are seen by their
-    near sides only and at different times, so a sighting within `within_m` of a known robot is that robot whatever
-    the covariances say.
+    Each known robot removes at most one sighting, so that an opponent beside a mate stays. Cameras see robots by their
+    near sides only and at different times. A sighting within `within_m` of a known robot is therefore that robot,
+    whatever the covariances are.
 
     Args:
         positions_m: (m, 2) of the sightings, world frame.
@@ -243,14 +245,14 @@ def without_known(
         surprises = _surprises(positions_m[None] - known_m[:, None], spreads)
         near = surprises <= _GATE
         if near.any():
-            known, seen = linear_sum_assignment(np.where(near, surprises, 1e3))
+            known, seen = linear_sum_assignment(np.where(near, surprises, _NO_PAIR))
             remain[seen[near[known, seen]]] = False
     return remain
 
 
 @lru_cache(maxsize=32)
 def _motion(duration_s: float) -> tuple[Floats, Floats]:
-    """Returns how states move in a step (6, 6), and the noise (6, 6) that it adds; cached."""
+    """Returns the matrix (6, 6) that moves states by a step, and the noise (6, 6) that the step adds; cached."""
     fades = math.exp(-duration_s / _LASTS_S)
     motion = np.array(
         (

@@ -12,15 +12,16 @@ from procs.model.frames import Flags, Floats
 from procs.model.geometry import plausible
 
 MOST_OBSTACLES = 50
-"""Obstacles of a frame that count: more are no robots, and would take the time of the tick."""
-_LEAST_M2 = 1e-6  # a millimetre: least variance of a sighting, which keeps filters regular
+"""Most obstacles of a frame that count: more cannot all be robots, and would take too much time of a tick."""
+_LEAST_M2 = 1e-6  # added to the variances of a sighting: a millimetre squared, which keeps filters regular
 
 
 @dataclass(frozen=True)
 class Seen:
     """n things in one frame of reference: positions (n, 2) in m, covariances (n, 2, 2) in m² in two parts.
 
-    The first part comes from the sight itself and is new in each picture; the second from the observer's pose.
+    The first part comes from the sight itself and is independent in each picture; the second comes from the observer's
+    pose.
     """
 
     NOTHING: ClassVar["Seen"]
@@ -33,7 +34,7 @@ class Seen:
 
     @classmethod
     def of(cls, positions_m: Iterable[Any], covariances_m2: Iterable[Any], radii_m: Iterable[float]) -> "Seen":
-        """Returns things with the covariance of the sight, without those that have impossible values.
+        """Returns things with covariances of the sight only; leaves out those with impossible values.
 
         Args:
             positions_m: n pairs x, y.
@@ -61,9 +62,9 @@ class Seen:
         return Seen(self.positions_m[which], self.by_sight_m2[which], self.by_pose_m2[which], self.radii_m[which])
 
     def widened(self, sight: float, pose: float) -> "Seen":
-        """Returns the same with wider covariances, for filters that take the errors of all frames for independent.
+        """Returns the same with wider covariances, for filters that assume independent errors of all frames.
 
-        `sight` and `pose` are the numbers of frames that share one error of the sight and of the own pose.
+        `sight` and `pose` are the numbers of frames that share one error of the sight and of the observer's pose.
         """
         if sight == pose == 1.0:
             return self

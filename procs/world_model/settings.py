@@ -10,11 +10,11 @@ from procs.model.units import US_PER_S
 from procs.world_model.opponents import OpponentSettings
 
 STALE_S = 0.5
-"""Older sightings of mates are not used, and older words of the own kicker."""
+"""Older sightings, and older statements of the own kicker and skiller, do not count."""
 
 
 def counts(age_s: float) -> bool:
-    """Returns whether a sighting counts that was exposed `age_s` ago: not one too old, nor one still to come."""
+    """Returns whether a sighting of this age counts: it must be neither too old nor from the future."""
     return 0.0 <= age_s <= STALE_S
 
 
@@ -24,7 +24,7 @@ class WorldModelConfig(Config):
     field: Field = Field()
     """Measures of the field."""
     ball_timeout_s: float = Setting(default=2.0, gt=0.0)
-    """The ball is unknown after that time without a sighting."""
+    """The ball is unknown after this time without a sighting."""
     players: Players = dict(PLAYERS)
     """Team and number of each robot."""
     ball: BallModel = BALL
@@ -32,34 +32,34 @@ class WorldModelConfig(Config):
     robot: RobotModel = ROBOT
     """Geometry of all robots."""
     opponent_timeout_s: float = Setting(default=0.6, gt=0.0)
-    """An opponent is forgotten after that time without a sighting."""
+    """An opponent is forgotten after this time without a sighting."""
     mate_timeout_s: float = Setting(default=5.0, gt=0.0)
-    """A mate is forgotten after that time without a message."""
+    """A mate is forgotten after this time without a message."""
     mate_radius_m: float = Setting(default=0.5, gt=0.0)
-    """An obstacle this near to a mate is that mate; further away only if it was seen so poorly."""
+    """An obstacle this near to a mate is that mate; one further away is, too, if its place is uncertain enough."""
     obstacle_deviation_m: float = Setting(default=0.4, gt=0.0)
     """Obstacles seen with a larger standard deviation are not used."""
     border_m: float = Setting(default=0.7, ge=0.0)
-    """Obstacles further outside the field than that are not robots of the match."""
+    """Obstacles further outside the field than this are not robots of the match."""
     use_team_sight: bool = True
     """Use the sightings of mates."""
     use_capture_times: bool = True
-    """Let a sighting count at the time of its exposure; otherwise, to see what that brings, when it arrives."""
+    """Let a sighting count at the time of its exposure; false, for comparison: at the time of its arrival."""
     use_ball_velocity: bool = True
-    """Tell the velocity of the ball; otherwise, to see what that brings, the ball always seems to rest."""
+    """Publish the velocity of the ball; false, for comparison: the ball always seems to rest."""
     message_period_s: float = Setting(default=0.1, gt=0.0)
     """Time from one message to the team to the next; messages go with the nearest frame of the camera."""
     sight_correlation: float = Setting(default=1.0, ge=1.0)
-    """Frames that share one error of the camera; the filters widen sightings by it."""
+    """Number of frames that share one error of the camera; multiplies the covariance of sightings."""
     shake_s_m: float = Setting(default=0.7, ge=0.0)
-    """Growth of the camera's deviation with speed, as a share of the percepts' deviation for each m/s."""
+    """Growth of the camera's deviation for each m/s of the robot, as a share of the percepts' deviation."""
     pose_correlation: float = Setting(default=2.0, ge=1.0)
-    """Frames that share one error of the own pose."""
+    """Number of frames that share one error of the own pose; multiplies the covariance that the pose adds."""
     team_correlation: float = Setting(default=1.0, ge=1.0)
-    """Messages of a mate that share one error."""
+    """Number of messages of a mate that share one error; multiplies the covariance of its sightings."""
 
     def age_s(self, capture_us: int, now_us: int) -> float:
-        """Returns the time since an exposure; 0 stands for an exposure in this tick."""
+        """Returns the time since an exposure; `capture_us` of 0 stands for an exposure in this tick."""
         return (now_us - capture_us) / US_PER_S if capture_us and self.use_capture_times else 0.0
 
     @property

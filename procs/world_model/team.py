@@ -10,10 +10,10 @@ from lcmtypes.soccer import pass_agreement_t
 from procs.model.frames import Floats
 from procs.model.geometry import wrap_rad
 
-_LEAST_M = 0.005  # deviation of a position besides that which its sender claims
+_LEAST_M = 0.005  # deviation of a position that is added to the stated one
 _ACCELERATION_M_S2 = 3.0  # deviation of a mate's acceleration since its message
-_DRIFT_M_S = 0.5  # most by which its acceleration moves it from the extrapolated place, in a second
-_TURNING_S = 0.25  # messages further apart do not tell the speed of turning
+_DRIFT_M_S = 0.5  # highest speed at which this acceleration moves a mate from the extrapolated place
+_TURNING_S = 0.25  # messages further apart do not determine the turning speed
 _EXTRAPOLATED_S = 0.5  # longest extrapolation of a velocity
 
 PlaceRow = tuple[float, float, float, float, float, float, float, float]
@@ -38,13 +38,13 @@ class Mate:
     covariance_m2: Floats = field(default_factory=_least_m2)
     """(2, 2) of the position at `told_s`, as the mate stated it."""
     number: int = 0
-    """On the mate's back."""
+    """Number on the mate's back; 0 if it is not stated."""
     holds_ball: bool = False
-    """The ball was in its mouth at `told_s`."""
+    """Whether the ball was in its mouth at `told_s`."""
     agreement: pass_agreement_t = field(default_factory=pass_agreement_t)
     """Its agreement about a pass."""
     omega_rad_s: float = 0.0
-    """Speed of turning between its last two messages."""
+    """Turning speed between its last two messages."""
 
     def position_at(self, time_s: float) -> Floats:
         """Returns the probable position (2) at a time near `told_s`."""
@@ -55,7 +55,7 @@ class Mate:
 class Places:
     """Positions of k mates at times near their messages.
 
-    Plain numbers, as NumPy takes longer than all of the arithmetic for a handful of robots.
+    It computes with plain numbers, because NumPy's overhead exceeds the arithmetic for so few robots.
     """
 
     def __init__(self, mates: Sequence[Mate]) -> None:
@@ -73,9 +73,9 @@ class Places:
         return made
 
     def rows_at(self, time_s: float, drifts_s: float = math.inf) -> list[PlaceRow]:
-        """Returns k probable positions with velocities, and with covariances, which grow away from the messages.
+        """Returns k probable positions with velocities and covariances.
 
-        They grow for `drifts_s` at most.
+        The covariances grow with the time since the message, but for `drifts_s` at most.
         """
         rows = []
         for told_s, x_m, y_m, vx_m_s, vy_m_s, xx_m2, xy_m2, yx_m2, yy_m2 in self._mates:
@@ -100,10 +100,10 @@ class Team:
     def __init__(self) -> None:
         self._mates: dict[str, Mate] = {}
 
-    def tell(self, mate: Mate) -> Mate | None:
-        """Takes a mate's message.
+    def note(self, mate: Mate) -> Mate | None:
+        """Takes a mate's message; sets and returns the mate with its turning speed.
 
-        Sets its speed of turning and returns it; None if a newer message is known, as radio may change the order.
+        Returns None if a newer message is known already, because the radio may change the order of messages.
         """
         known = self._mates.get(mate.name)
         if known is not None:

@@ -6,16 +6,19 @@ from lcmtypes.soccer import team_message_t
 from procs.model.covariance import is_covariance
 from procs.model.frames import Floats
 from procs.model.geometry import plausible, wrap_rad
+from procs.model.units import US_PER_S
 from procs.world_model.seen import MOST_OBSTACLES, Seen
 from procs.world_model.team import Mate
 
-_MATE_M_S = 0.3  # deviation of the velocity of a mate's mouth, whose turning is that of its last two messages
+IN_MOUTH_M = 0.03
+"""Deviation of a ball's place in a mouth."""
+_MATE_M_S = 0.3  # deviation of the velocity of a mate's mouth, whose turning follows from its last two messages
 
 
 def mate_of(message: team_message_t, now_s: float) -> Mate | None:
-    """Returns the state of the sender; None if it tells no name, is from the future or holds impossible values."""
+    """Returns the state of the sender; None if the message has no name, is from the future or has impossible values."""
     values = (message.x_m, message.y_m, message.heading_rad, message.vx_m_s, message.vy_m_s)
-    told_s = message.header.time_us / 1e6
+    told_s = message.header.time_us / US_PER_S
     if not message.robot or told_s > now_s or not plausible(*values) or not is_covariance(message.pose_covariance):
         return None
     return Mate(
@@ -41,11 +44,11 @@ def ball_of(message: team_message_t) -> Seen:
 
 
 def mouth_of(mate: Mate, mouth_m: float, time_s: float) -> Seen:
-    """Returns the place of a ball in a mate's mouth at a time near its message; none if the mate is lost."""
+    """Returns the place of a ball (0 or 1) in a mate's mouth at a time near its message; 0 if the mate is lost."""
     if not mate.localized:
         return Seen.NOTHING
     ahead_m = mouth_m * np.array((np.cos(mate.heading_rad), np.sin(mate.heading_rad)))
-    return Seen.of([mate.position_at(time_s) + ahead_m], [mate.covariance_m2 + np.eye(2) * 0.03**2], [0.0])
+    return Seen.of([mate.position_at(time_s) + ahead_m], [mate.covariance_m2 + np.eye(2) * IN_MOUTH_M**2], [0.0])
 
 
 def held_by(mate: Mate, mouth_m: float) -> tuple[Floats, Floats]:

@@ -1,4 +1,4 @@
-"""The walls around the field, the nets and posts of its goals, and the bars: what a ball can meet besides robots."""
+"""Obstacles of a ball besides robots: the walls around the field, and the nets, posts and bars of its goals."""
 
 import math
 from dataclasses import dataclass
@@ -9,12 +9,12 @@ from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_modes import Mode
 from procs.world_model.crossbar import Crossbars
 
-_WALL_BOUNCE, _NET_BOUNCE = 0.5, 0.05  # shares of the speed that they leave
-_INSIDE_M = 1.0  # a ball that far from the walls is within them whatever its model
-_RESTS = 0.5  # a ball that is more likely than that at rest stays where it lies
-_POST_M = 0.2  # a ball touches a post at most that far from it
-_KEEPER_M = 1.0  # a keeper that no camera sees may stand so far in front of its goal
-_MARGIN_M, _MOST_M = 0.05, 0.2  # of a ball near a wall; a less certain place counts as if it were that certain
+_WALL_BOUNCE, _NET_BOUNCE = 0.5, 0.05  # share of the speed that a wall and a net leave
+_INSIDE_M = 1.0  # a ball this far from the walls is within them in every model
+_RESTS = 0.5  # a ball that rests with a higher probability stays where it lies
+_POST_M = 0.2  # largest distance between a post and the middle of a ball that touches it
+_KEEPER_M = 1.0  # a keeper that no camera sees may stand this far in front of its goal
+_MARGIN_M, _MOST_M = 0.05, 0.2  # distance that counts as near a wall, and most that an uncertain place adds to it
 
 
 @dataclass(frozen=True)
@@ -50,8 +50,10 @@ class Walls:
         return not ball.surely_within(back_m, math.inf) and abs(float(ball.state[0])) > back_m
 
     def contain(self, ball: BallFilter, nets: bool) -> None:
-        """Lets a ball beyond the walls bounce off them; `nets` of goals are in the way of one that comes from the field
-        and does not fly over them."""
+        """Lets a ball beyond the walls bounce off them.
+
+        `nets` states whether the nets stop it, too: they stop a ball from the field that does not fly over the goal.
+        """
         x_limit_m, y_limit_m = self.goal_x_m - _INSIDE_M, self.y_m - _INSIDE_M
         if ball.surely_within(x_limit_m, y_limit_m):
             return

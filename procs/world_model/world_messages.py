@@ -34,7 +34,7 @@ def fill_world_model(
     silent: RobotTracks,
     now_s: float,
 ) -> None:
-    """Fills in the beliefs of the robot at `now_s`; the first of the team then are the mates."""
+    """Fills in the beliefs of the robot at `now_s`; `team` begins with the places of the `mates`."""
     message.localized = view.localized
     message.x_m, message.y_m, message.heading_rad = view.pose.tolist()
     message.vx_m_s, message.vy_m_s = view.velocity_m_s.tolist()
@@ -71,8 +71,8 @@ def fill_plan(message: team_message_t, target: drive_target_t | None, battery: b
 
     Args:
         message: to the team.
-        target: of the skiller; None if there is no present one.
-        battery: newest state; None if it is not known.
+        target: newest target of the skiller; None if there is none or it is out of date.
+        battery: newest state of the battery; None if it is not known.
     """
     place = (0.0, 0.0, 0.0)
     message.has_target = False
@@ -129,7 +129,7 @@ def _mate(mate: Mate, place: PlaceRow, now_s: float) -> mate_estimate_t:
 
 
 def _robots(tracks: RobotTracks) -> list[robot_estimate_t]:
-    """Returns the tracks that are no ghosts."""
+    """Returns the tracks that have more than one sighting."""
     states, covariances_m2 = tracks.states.tolist(), tracks.covariances[:, :2, :2].tolist()
     ages_s, ids, estimates = tracks.ages_s.tolist(), tracks.ids.tolist(), []
     for track in tracks.sure.tolist():

@@ -1,8 +1,12 @@
 """World model of a robot: itself, the ball, mates and opponents; and its messages to the team.
 
-Sources: the ball from its own mouth, its own camera, then the team's cameras (`ball_follower`); mates from their own
-messages; opponents from obstacles that the robot and its mates see and that are not robots of the team. A mate that
-does not know its place is left out. While the robot itself does not know its place, only its mates' sightings count.
+Sources:
+
+- the ball (`ball_follower`): the robot's own mouth, its own camera, then the cameras of mates;
+- mates: their own messages; a mate that does not know its place is left out;
+- opponents: obstacles that the robot and its mates see and that are not robots of the team.
+
+While the robot itself does not know its place, only the sightings of its mates count.
 """
 
 from collections.abc import Sequence
@@ -35,8 +39,8 @@ from procs.world_model.team import Mate, PlaceRow, Places, Team
 from procs.world_model.told import mate_of, obstacles_of
 from procs.world_model.world_messages import fill_ball, fill_kick, fill_plan, fill_team_message, fill_world_model
 
-_BEHIND_WALL_M = 1.0  # a mate that believes itself further outside is lost
-_RESTART_S = 2.0  # an agent that is silent for longer does not play
+_BEHIND_WALL_M = 1.0  # a mate that believes it is further outside the walls is lost
+_RESTART_S = 2.0  # a robot whose agent is silent for longer does not play
 
 
 class WorldModel(Component):
@@ -63,7 +67,7 @@ class WorldModel(Component):
         self._robot = self.name.rpartition("/")[0]
         self._ball = BallFollower(self._robot, self.config)
         self._opponents = RobotTracks()
-        self._silent = RobotTracks()  # mates that do not tell their places
+        self._silent = RobotTracks()  # mates that do not state their places
         self._frames = FramePace()  # of the camera that sees the obstacles
         self._apply_settings()
         self._team = Team()
@@ -122,19 +126,19 @@ class WorldModel(Component):
             mate = mate_of(message, now_s) if self._is_of_team(message.robot) else None
             if mate is None or mate.name == self._robot:
                 continue
-            is_wrong = mate.localized and not self._is_inside_walls(mate)  # and with it all that it sees
+            is_wrong = mate.localized and not self._is_inside_walls(mate)  # its sightings are wrong, too
             mate.localized = mate.localized and not is_wrong
-            if (mate := self._team.tell(mate)) and not is_wrong:
+            if (mate := self._team.note(mate)) and not is_wrong:
                 told.append((message, mate))
         return told if self.config.use_team_sight else []
 
     def _is_of_team(self, robot: str) -> bool:
-        """Returns whether a sender may be a mate: robots of the other team, whose radio is heard, are not."""
+        """Returns whether a sender may be a mate: the radio also receives robots of the other team."""
         player = player_of(robot, self.config.players)
         return not (player and self._own_team) or TEAM_NUMBERS[player.team] == self._own_team
 
     def _is_inside_walls(self, mate: Mate) -> bool:
-        """Returns whether a mate can be where it believes to be: inside the walls, give or take a large error."""
+        """Returns whether a mate can be where it believes it is: inside the walls, allowing for a large error."""
         field, (x_m, y_m) = self.config.field, mate.position_m.tolist()
         return field.in_field(x_m, y_m, field.border_m + _BEHIND_WALL_M)
 
@@ -170,9 +174,9 @@ class WorldModel(Component):
         told: list[tuple[team_message_t, Mate]],
         passed_s: float,
     ) -> None:
-        """Takes the obstacles of the own camera and of mates; the first `mates` robots of the team are the others.
+        """Tracks opponents and silent mates by the obstacles of the own camera and of mates.
 
-        `places` are those of the team now.
+        The first `mates` robots of `team` are the mates; `places` are the places of the team now.
         """
         config, rules, now_s = self.config, self._rules, self.clock.now_s
         for tracks in filter(len, (self._opponents, self._silent)):
@@ -199,14 +203,15 @@ class WorldModel(Component):
                 self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
 
     def _message_due(self) -> bool:
-        """Returns whether to send now: about once a period, and rather in a tick with a new sighting.
+        """Returns whether to send a message now: once a period, preferably in a tick with a new frame of the camera.
 
-        Half a tick early is nearer to the period than half a tick late. A tick without a frame of the camera waits one
-        tick for it; from then on messages keep its pace, and mates hear of a sighting as soon as they can.
+        A message may come half a tick early, which rounds the period to the nearest tick. If the tick has no new frame,
+        the message waits one tick for it. From then on messages keep the pace of the camera, and mates get sightings as
+        early as possible.
         """
         caught_or_lost = self.team_message.value.ball_held != self._holds
         if caught_or_lost or self._ball.kicks.untold:
-            return True  # mates have to know at once
+            return True  # mates need to know at once
         half_tick_s = self.clock.iteration_s / 2
         passed_s = self.clock.since_s(self._sent_us) + half_tick_s
         if not self.ball_percept.refreshed:

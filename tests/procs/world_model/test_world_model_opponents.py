@@ -173,10 +173,10 @@ def test_team_keeps_the_newest_message_until_the_timeout() -> None:
         return Mate(name, "defender", told_s, np.array((x_m, 0.0)), 0.0, np.array((1.0, 0.0)), localized)
 
     team = Team()
-    assert team.tell(word("cyan2", 1.0, 2.0))
-    assert not team.tell(word("cyan2", 0.9, 7.0)), "overtaken by a newer one"
-    team.tell(word("cyan1", 1.0, 0.0))
-    team.tell(word("cyan3", 1.0, 0.0, localized=False))
+    assert team.note(word("cyan2", 1.0, 2.0))
+    assert not team.note(word("cyan2", 0.9, 7.0)), "overtaken by a newer one"
+    team.note(word("cyan1", 1.0, 0.0))
+    team.note(word("cyan3", 1.0, 0.0, localized=False))
     mates = team.localized(1.2, 5.0)
     assert [mate.name for mate in mates] == ["cyan1", "cyan2"]
     assert mates[1].position_at(1.2) == pytest.approx((2.2, 0.0))
