@@ -26,7 +26,8 @@ _BALL = "#ffee58"
 _OBSTACLE = "#ff4081"
 _LINE = "#00e5ff"
 _TEAMS = {number: team for team, number in TEAM_NUMBERS.items()}
-_STEPS = 24
+_STEPS = 24  # number of points on the outline of a foot
+_NEAREST_M = 0.05  # ahead of the stereo pair; nearer points are not drawn
 
 
 class _Lens(Protocol):
@@ -46,7 +47,7 @@ class _StereoLens:
     def project(self, points_m: Floats) -> Floats:
         rig = self._rig
         ahead_m = points_m[:, 0] - rig.forward_m
-        ahead_m = np.where(ahead_m > 0.05, ahead_m, np.nan)
+        ahead_m = np.where(ahead_m > _NEAREST_M, ahead_m, np.nan)
         columns = (rig.width_px - 1) / 2 + rig.focal_px * (rig.baseline_m / 2 - points_m[:, 1]) / ahead_m
         rows = (rig.height_px - 1) / 2 + rig.focal_px * (rig.height_m - points_m[:, 2]) / ahead_m
         columns = np.where((columns >= 0) & (columns < rig.width_px), columns, np.nan)
@@ -66,7 +67,7 @@ class _MirrorLens:
 
 
 def draw_sight(camera: str, newest: Newest, scene: Scene) -> None:
-    """Draws ball, obstacles and points of lines over an image."""
+    """Draws ball, obstacles and points on lines over the image of a camera, whose scene is measured in pixels."""
     space, _, name = camera.rpartition("/")
     frame: frame_t | None = newest(camera)
     if frame is None:
@@ -101,13 +102,13 @@ def _draw_ring(
     radius_m: float,
     lens: _MirrorLens,
     scene: Scene,
-    width_m: float,
+    width_px: float,
     words: str,
 ) -> None:
-    """Draws the outline of what may be the ball, and words above it."""
+    """Draws the outline of a candidate for the ball, with words above it."""
     column, row, radius_px = lens.mirror.sphere((ball.x_m, ball.y_m, ball.z_m + radius_m), radius_m)
     x_px, y_px = column + lens.shift_px[0], row + lens.shift_px[1]
-    scene.circle(x_px, y_px, radius_px + 2.0, stroke=_BALL, width_m=width_m)
+    scene.circle(x_px, y_px, radius_px + 2.0, stroke=_BALL, width_m=width_px)
     scene.text(x_px, y_px - radius_px - 10.0, words, _BALL, 10.0)
 
 

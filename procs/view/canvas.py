@@ -1,4 +1,4 @@
-"""A picture with a scale: draws shapes given in metres of the world frame, smoothed, to fractions of a pixel."""
+"""A picture with a scale: draws smoothed shapes, given in metres of the world frame, to fractions of a pixel."""
 
 import math
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ _FONT_HEIGHT_PX = 21  # of a capital letter at scale 1
 
 
 class Canvas:
-    """Draws into `picture`; x points right and y up, and `origin_px` is where the world frame begins."""
+    """Draws into `picture`; x points right and y up, and the origin of the world frame lies at `origin_px`."""
 
     def __init__(self, picture: Picture, origin_px: tuple[float, float], px_per_m: float) -> None:
         self.picture = picture
@@ -77,7 +77,7 @@ class Canvas:
 
     @staticmethod
     def _fine(pixels: float) -> int:
-        # OpenCV takes whole numbers of limited size; what lies far off the picture, or nowhere, is not seen anyway.
+        """Returns OpenCV's fixed-point number, which has a limited size; NaN and infinity lie far off the picture."""
         near = min(_FAR_PX, max(-_FAR_PX, pixels)) if math.isfinite(pixels) else -_FAR_PX
         return round(near * (1 << _SHIFT))
 

@@ -7,26 +7,28 @@ from procs.model.robot import number_in, team_in
 from procs.model.teams import Ends
 
 Line = list[tuple[str, str]]
+"""Texts, each with its style in the words of rich."""
 
 _GROUND = "on rgb(24,74,36)"
 _PAINT = f"rgb(150,190,150) {_GROUND}"
 _STYLES = {"cyan": f"bold rgb(90,230,255) {_GROUND}", "magenta": f"bold rgb(255,130,255) {_GROUND}"}
 _BALL = f"bold rgb(255,190,60) {_GROUND}"
-_HEIGHT_OF_WIDTH = 2.0  # of a letter in a terminal
+_HEIGHT_OF_WIDTH = 2.0  # height of a letter in a terminal, divided by its width
+_LEAST_COLUMNS, _LEAST_ROWS = 12, 5  # a smaller drawing shows nothing useful
 
 
 def field_drawing(
     truth: ground_truth_t, columns: int, rows: int, field: Field | None = None, ends: Ends | None = None
 ) -> list[Line]:
-    """Returns the field as large as fits, each goal in the colour of the team that defends it by `ends`.
+    """Returns the lines of the largest drawing that fits into `columns` and `rows`; none if that is too small.
 
-    The world's x points to the right. Each line is a list of texts and styles.
+    The world's x points to the right. Each goal has the colour of the team that defends it by `ends`.
     """
     measures = field or Field()
     length_m, width_m = measures.length_m, measures.width_m
     height = min(rows, round(columns * width_m / length_m / _HEIGHT_OF_WIDTH))
     width = min(columns, round(height * length_m / width_m * _HEIGHT_OF_WIDTH))
-    if width < 12 or height < 5:
+    if width < _LEAST_COLUMNS or height < _LEAST_ROWS:
         return []
     goals = _goals(ends or Ends())
     letters = [[_ground(column, row, width, height, goals) for column in range(width)] for row in range(height)]
@@ -69,7 +71,7 @@ def _ground(column: int, row: int, width: int, height: int, goals: tuple[str, st
 
 
 def _joined(letters: Line) -> Line:
-    """Joins neighbours of one style."""
+    """Joins neighbouring letters of one style."""
     line: Line = []
     for letter, style in letters:
         if line and line[-1][1] == style:

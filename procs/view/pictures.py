@@ -1,4 +1,4 @@
-"""Compresses frames of all cameras onto the bus: for recordings, and for viewers on other machines."""
+"""Publishes compressed frames of all cameras on the bus, for recordings and for viewers on other machines."""
 
 from typing import Literal
 
@@ -16,13 +16,13 @@ class PicturesConfig(Config):
     """Settings of the pictures on the bus."""
 
     rate_hz: float = Setting(default=2.0, ge=0.0)
-    """Most pictures a second of each camera, by logical time; 0: every frame."""
+    """Most pictures of each camera per second of logical time; 0: every frame."""
     format: Literal["jpeg", "png"] = "jpeg"
     """jpeg is small and lossy; png is lossless and large."""
     quality: int = Setting(default=80, ge=1, le=100)
     """Quality of a jpeg picture; 100 is best."""
     longest_px: int = Setting(default=0, ge=0)
-    """Larger pictures are scaled until their longer side is that long; 0: none is."""
+    """Larger pictures are scaled down until their longer side has this length; 0: no picture is scaled."""
 
 
 class Pictures(Component):

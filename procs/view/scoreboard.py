@@ -12,7 +12,7 @@ from procs.referee.reasons import OFF_FIELD
 from procs.view.field_drawing import field_drawing
 
 Newest = Callable[[str], Any]
-"""Gives the newest message of a channel, decoded, or None."""
+"""Returns the newest message of a channel, decoded, or None."""
 
 GAME_STATE = "world/game_state"
 HISTORY = "world/match_history"

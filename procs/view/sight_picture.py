@@ -18,6 +18,7 @@ from lcmtypes.core import picture_t
 from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t
 from procs.model.algebra import Floats
 from procs.model.ball import RADIUS_M
+from procs.model.units import US_PER_S
 from procs.view.canvas import Colour
 from procs.vision.calibration import MirrorConfig
 from procs.vision.colours import Picture
@@ -30,7 +31,7 @@ OBSTACLE: Colour = (129, 64, 255)
 LINE: Colour = (255, 229, 0)
 """Colours of the findings, as blue, green, red."""
 _SHIFT = 4  # OpenCV takes coordinates in sixteenths of a pixel
-_STEPS = 32
+_STEPS = 32  # number of points on the outline of a foot
 _ROBOT = "cyan3"
 _LAUNCH = (
     "include: {file}\nname: sight\ncomponents: {{world/pictures: {{use: procs.view.pictures, config: {config}}}}}\n"
@@ -48,9 +49,9 @@ def drawn(
     scale: int = 2,
     ball_radius_m: float = RADIUS_M,
 ) -> Picture:
-    """Returns the picture of a camera (size, size, 3), `scale` times larger, with the findings in it.
+    """Returns the picture of a camera (size, size, 3), enlarged by `scale`, with the findings drawn into it.
 
-    Points on lines are dots, the feet of robots and the ball's outline are rings.
+    Points on lines are dots; the feet of robots and the outline of the ball are rings.
     """
     picture = cv2.resize(pixels, None, fx=scale, fy=scale, interpolation=cv2.INTER_NEAREST)
     points_m = np.column_stack((lines.x_m, lines.y_m, np.zeros(len(lines.x_m))))
@@ -100,7 +101,7 @@ def _of_tick(sent: Sequence[bytes], kind: type[T], tick: int) -> T:
 
 
 def _included(launch: str) -> str:
-    """Returns what a file elsewhere includes for a launch file: its path, or the name of one that comes with fwk."""
+    """Returns how a launch file in another folder includes this one: by its path, or by its name if fwk provides it."""
     places = (Path(launch), Path("launch") / launch)
     return next((str(place.absolute()) for place in places if place.is_file()), launch)
 
@@ -131,7 +132,7 @@ def main() -> None:
         except PlanError as error:
             raise SystemExit(str(error)) from error
         system = system_of(str(file), seed=asked.seed)
-        while system.now_us < asked.time * 1e6:
+        while system.now_us < asked.time * US_PER_S:
             system.tick()
         mirror = MirrorConfig(**settings["mirror"]).mirror()
         picture = sight_in(system, asked.robot, mirror, settings["ball"]["radius_m"])

@@ -28,7 +28,7 @@ BALL_EDGE: Colour = (20, 90, 130)
 BAR: Colour = (32, 28, 26)
 TEXT: Colour = (245, 245, 245)
 
-_TAIL_S = 0.12  # the ball's tail shows its way of this time
+_TAIL_S = 0.12  # the ball's tail shows the way of this time
 _HIGHER = (0.3, -0.4)  # shift of a flying ball's shadow for each metre of height
 _MARKER = 0.64  # radius of the team marker, as a share of the robot's
 
@@ -43,7 +43,7 @@ class TopView:
         robot: RobotModel = ROBOT,
         ball: BallModel = BALL_MODEL,
     ) -> None:
-        """Takes the height from the field; width and height are even, as video encoders require."""
+        """Derives the height from the field; width and height are even, as video encoders require."""
         self._radius_m, self._ball_radius_m = robot.radius_m, ball.radius_m
         self._mouth_rad = math.radians(robot.mouth_half_angle_deg)
         self._field = field or Field()
@@ -110,13 +110,13 @@ class TopView:
 
 
 def picture(newest: Callable[[str], Any]) -> Picture | None:
-    """Draws the newest messages, decoded, of a running or recorded match; None before the world was seen."""
+    """Draws a running or recorded match from its newest decoded messages; None before the first ground truth."""
     truth = newest(TRUTH)
     return None if truth is None else _view_of(newest).draw(truth, newest(GAME_STATE))
 
 
 def picture_with_beliefs(newest: Callable[[str], Any]) -> Picture | None:
-    """Draws the same with the beliefs of every robot about itself and the ball."""
+    """Draws the same picture as `picture`, with the beliefs of every robot about itself and the ball."""
     truth = newest(TRUTH)
     if truth is None:
         return None
@@ -136,18 +136,18 @@ def _view(field: Field, robot: RobotModel, ball: BallModel) -> TopView:
 
 
 def _settings(newest: Callable[[str], Any], name: str) -> dict[str, Any]:
-    """Returns the simulator's settings of the robot or the ball; empty, for the usual ones, where none are known."""
+    """Returns the simulator's settings of the robot or the ball; empty, which means the usual ones, if unknown."""
     return newest.settings("world/*", name) if hasattr(newest, "settings") else {}
 
 
 def _field(newest: Callable[[str], Any]) -> Field:
-    """Returns the field of the match; the usual one where the simulator has not stated it."""
+    """Returns the field of the match; the usual one if the simulator has not stated it."""
     measures = newest(MEASURES)
     return Field() if measures is None else field_of(measures)
 
 
 def _outline(robot: true_robot_t, radius_m: float, mouth_rad: float) -> list[tuple[float, float]]:
-    """Returns a circle whose front is cut off."""
+    """Returns the outline of a robot in metres: a circle whose front is cut off at the mouth."""
     steps = 24
     span_rad = 2 * math.pi - 2 * mouth_rad
     angles = [robot.heading_rad + mouth_rad + span_rad * step / steps for step in range(steps + 1)]

@@ -23,8 +23,8 @@ _GRASS = "#30803c"
 _SURROUND = "#245c30"
 _WHITE = "#f0f4f0"
 _ARC_STEPS = 24
-_NOSE_M = 0.3
-_RING_M = 0.03  # between a robot and the ring where it believes to be
+_NOSE_M = 0.3  # length of the line that shows a robot's heading
+_RING_M = 0.03  # distance between the radius of a robot and that of the ring where it believes it is
 
 
 class MatchView(View):
@@ -62,7 +62,7 @@ class MatchView(View):
         draw_sight(camera, newest, scene)
 
     async def moved(self, run: RunAccess, name: str, x_m: float, y_m: float) -> None:
-        """Puts ball or robot to another place."""
+        """Puts the ball or a robot, as `name` states, at another place of the world frame."""
         if name == "ball":
             await run.call("world/place_ball", {"x_m": x_m, "y_m": y_m})
             return
@@ -80,10 +80,12 @@ class RefereePage(Page):
     needs = ("world/referee_command@outside", GAME_STATE)
 
     OF_TEAM = (*SET_PIECES, *GOALS)
+    """Commands that name a team."""
     OF_ROBOT = (*CARDS, *REPAIRS)
+    """Commands that name a robot."""
 
     def build(self, page: OpenPage) -> None:
-        """Makes the elements of the page."""
+        """Adds the score to the page, and the buttons if the user may steer the run."""
         from nicegui import ui
 
         run = page.access
