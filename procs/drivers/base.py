@@ -111,6 +111,7 @@ class Base(Component):
         self._ramp.velocity = velocity
 
     def _add(self, state: wheel_state_t) -> None:
+        """Adds a measurement of the wheels to the odometry, unless it is impossible."""
         wheels_m_s = self._wheels.read(state.measured_m_s, state.header.writer)
         if wheels_m_s is None:
             return
@@ -146,6 +147,7 @@ class Base(Component):
         self.odometry.write()
 
     def _drive(self) -> None:
+        """Commands the wheels to follow the wanted velocity within the limits."""
         robot = self.config.robot
         usual_s = self.clock.iteration_s
         passed_s = usual_s if self._driven_us < 0 else self.clock.since_s(self._driven_us)
@@ -156,6 +158,7 @@ class Base(Component):
         self.wheel_command.write()
 
     def _wanted(self) -> Velocity:
+        """Returns the commanded velocity, or standstill if the command is late; reports the first late tick."""
         command = self.motor_command.value
         age_s = self.clock.since_s(self.motor_command.header.time_us)
         late = self.motor_command.has_value and age_s > self.config.command_timeout_s

@@ -94,6 +94,11 @@ class CameraDriver(Component):
             self._recorded.close()
 
     def _open(self) -> None:
+        """Opens the source of the settings.
+
+        Raises:
+            SourceError: the source cannot be opened, or only one of width and height is given.
+        """
         config = self.config
         self._live, self._recorded, self._ended = None, None, False
         if bool(config.width_px) != bool(config.height_px):
@@ -112,6 +117,11 @@ class CameraDriver(Component):
             self._live = Live(lambda: open_device(device, wanted), backoff)
 
     def _picture(self, number: int) -> Picture | None:
+        """Returns a recorded picture, or None after the last.
+
+        Raises:
+            SourceError: the picture is damaged, or the last one has been read and `at_end` is `fail`.
+        """
         if self._ended or self._recorded is None:
             return None
         found = self._recorded.picture(number)
@@ -124,6 +134,7 @@ class CameraDriver(Component):
         return found
 
     def _as_wanted(self, pixels: Picture) -> Picture:
+        """Returns the picture with the colours and the size of the settings, cropped to their aspect."""
         config = self.config
         if config.grey:
             pixels = np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY), np.uint8)

@@ -98,6 +98,7 @@ class Kicker(Component):
             self._fail_open("the hardware has not kicked")
 
     def _act(self) -> None:
+        """Commands the hardware: the next waiting kick if ball and charge are there, and ball handling."""
         self._refuse_impossible()
         sensor, drive = self.kicker_sensor.value, self.kicker_drive.value
         drive.kick_id, drive.kick_m_s, drive.elevation_rad = sensor.kick_id, 0.0, 0.0

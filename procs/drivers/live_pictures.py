@@ -128,6 +128,7 @@ class Live:
         self._thread.join(CLOSE_S)
 
     def _work(self, capture: cv2.VideoCapture | None) -> None:
+        """Reads pictures in the separate thread until the source is closed."""
         while capture is not None:
             there, pixels = capture.read()
             if self._closing.is_set():

@@ -112,7 +112,7 @@ class Video:
 
 
 class Endless:
-    """Recorded pictures that begin again after the last."""
+    """Recorded pictures that begin again after the last one."""
 
     def __init__(self, pictures: Recorded) -> None:
         self._pictures = pictures
