@@ -24,6 +24,7 @@ class GlobalSearch:
     """Scores every position of the grid for points within `reach_m` of the robot."""
 
     def __init__(self, lines: LineMap, reach_m: float) -> None:
+        """Computes the table of scores and the grid of positions, with room for points beyond the grid."""
         field = lines.field
         beyond_m = max(_LEAST_BEYOND_M, min(field.border_m, reach_m) - _BESIDE_WALL_M)
         half_x = round((field.half_length_m + beyond_m) / _CELL_M)

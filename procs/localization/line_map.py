@@ -22,6 +22,7 @@ class LineMap:
     """Distance to the middle of the nearest line or mark."""
 
     def __init__(self, field: Field, cell_m: float = 0.05) -> None:
+        """Computes the table of a field, with square cells of the width `cell_m`."""
         self.field = field
         self._cell_m = cell_m
         self._left_m = -field.half_length_m - _MARGIN_M

@@ -149,6 +149,7 @@ class Localization(Component):
         self._localizer.change(line_map(self.config.field), self._settings())
 
     def _settings(self) -> LocalizerSettings:
+        """Returns the settings of the localizer; errors and correlation grow with the ground that a pixel covers."""
         config = self.config
         pixel_m, _ = config.mirror.mirror().metres_per_px(_AWAY_M)
         coarse = max(1.0, pixel_m / _USUAL.metres_per_px(_AWAY_M)[0])

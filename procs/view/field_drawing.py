@@ -58,6 +58,7 @@ def _goals(ends: Ends) -> tuple[str, str]:
 
 
 def _ground(column: int, row: int, width: int, height: int, goals: tuple[str, str]) -> tuple[str, str]:
+    """Returns letter and style of the empty field at a place of the drawing; `goals` are the styles of the goals."""
     top, bottom, left, right = row == 0, row == height - 1, column == 0, column == width - 1
     if (left or right) and abs(row - (height - 1) / 2) <= max(0.5, height / 12):
         return "█", goals[0 if left else 1]

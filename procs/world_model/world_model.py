@@ -145,6 +145,7 @@ class WorldModel(Component):
     def _follow_ball(
         self, view: OwnView, team: Sequence[PlaceRow], told: list[tuple[team_message_t, Mate]], passed_s: float
     ) -> None:
+        """Tracks the ball, and notes a kick and the newest percept for the next message to the team."""
         percept = self.ball_percept.value if self.ball_percept.refreshed else None
         news = BallNews(
             now_us=self.clock.now_us,
