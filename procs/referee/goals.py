@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from procs.model.events import Event
 from procs.model.field import Field, Point
 from procs.model.game_states import State
 from procs.model.teams import Ends, Team, team_number
@@ -21,46 +22,53 @@ class Verdict(NamedTuple):
     reason: Reason | None = None
 
 
-def judge(place: Point, piece: State, touches: Touches, sight: Sight, ends: Ends, field: Field) -> Verdict:
-    """Judges a ball in the goal at `place`, after the set piece with which this stretch of the game began."""
+def judge(event: Event, piece: State, touches: Touches, sight: Sight, ends: Ends, field: Field) -> Verdict:
+    """Judges a ball in a goal, after the set piece with which this stretch of the game began.
+
+    A ball that no robot has touched since, or since a person put it down, is no goal.
+    """
+    place = Point(event.x_m, event.y_m)
     conceding = ends.defender(place.x_m)
-    if touches.disturbed:
+    if not (event.robot and touches.last):
         return Verdict(Team.NONE, after_goal_line(place, Team.NONE, field, ends))
-    team = team_number(touches.last)
-    if team is conceding:
-        direct = touches.robots == {touches.taker} and len(sight.team(team)) > 1
-        if direct and piece is not State.PLAY:
-            return Verdict(Team.NONE, corner_kick(conceding.other, place, field), Reason.OWN_GOAL)
-        return Verdict(conceding.other, kick_off(conceding))
-    reason = _why_not(piece, touches, sight, ends)
+    scorer = conceding.other
+    reason = _why_not(scorer, piece, touches, sight, ends)
+    if reason and team_number(touches.last) is conceding:
+        return Verdict(Team.NONE, corner_kick(scorer, place, field), reason)
     if reason:
         return Verdict(Team.NONE, goal_kick(conceding, math.copysign(1.0, place.y_m), field, ends), reason)
-    return Verdict(conceding.other, kick_off(conceding))
+    return Verdict(scorer, kick_off(conceding))
 
 
-def _why_not(piece: State, touches: Touches, sight: Sight, ends: Ends) -> Reason | None:
-    """Returns why the goal of the team that attacks does not count; None if it does."""
+def _why_not(scorer: Team, piece: State, touches: Touches, sight: Sight, ends: Ends) -> Reason | None:
+    """Returns why the goal does not count for the team that attacks; None if it does."""
     team = team_number(touches.last)
-    if touches.place.x_m * ends.side_of(team) > 0:
+    own_goal = team is not scorer
+    direct = touches.robots == {touches.taker} and piece is not State.PLAY
+    if own_goal and direct and len(sight.team(team)) > 1:
+        return Reason.OWN_GOAL
+    if not own_goal and touches.place.x_m * ends.side_of(team) > 0:
         return Reason.OWN_HALF
-    if len(sight.team(team)) < 2:
+    if len(sight.team(scorer)) < 2:
         return None  # a robot that is alone has no mate to pass to
-    if _lacks_second_robot(team, piece, touches):
-        return Reason.NO_SECOND_ROBOT
-    if touches.owes_pass is team:
+    reason = _why_not_after(piece, scorer, touches)
+    if reason is None and not own_goal and touches.owes_pass is team:
         return Reason.NO_PASS
-    return None
+    return reason
 
 
-def _lacks_second_robot(team: Team, piece: State, touches: Touches) -> bool:
-    """Returns whether a set piece went into the goal without a second robot.
+def _why_not_after(piece: State, scorer: Team, touches: Touches) -> Reason | None:
+    """Returns why a goal does not count after a set piece; None if it does.
 
-    After a dropped ball any will do; after others it is a mate of the taker, unless rivals have had the ball: one from
-    which it bounced does not count.
+    After a dropped ball two robots must have touched it. After others a mate of the taker must have, which a rival off
+    which the ball goes in does not replace, after a free roll unless the time for the set piece was over. Rivals that
+    have had the ball lift both conditions: one from which it bounced does not.
     """
     if piece is State.DROP_BALL:
-        return len(touches.robots) < 2
-    of_set_piece = piece not in (State.PLAY, State.PENALTY) or team is touches.late
-    if not of_set_piece or touches.intercepted or team is not team_number(touches.taker):
-        return False
-    return all(robot == touches.taker or team_number(robot) is not team for robot in touches.robots)
+        return Reason.NO_SECOND_ROBOT if len(touches.robots) < 2 else None
+    of_set_piece = piece not in (State.PLAY, State.PENALTY) or scorer is touches.late
+    if not of_set_piece or touches.intercepted or scorer is not team_number(touches.taker):
+        return None
+    if all(robot == touches.taker or team_number(robot) is not scorer for robot in touches.robots):
+        return Reason.NO_SECOND_ROBOT
+    return None if touches.passed or touches.overdue else Reason.NOT_FREE

@@ -24,6 +24,7 @@ class Reason(StrEnum):
     OWN_GOAL = "own goal straight from a set piece"
     OWN_HALF = "shot from the own half"
     NO_SECOND_ROBOT = "no second robot touched the ball"
+    NOT_FREE = "the ball of the set piece did not roll freely"
     NO_PASS = "no pass since the ball was won in the own half"
     BY_HAND = "by hand"
     REPAIR = "repair"

@@ -26,8 +26,6 @@ class Sight(NamedTuple):
     """Velocity of each robot; a robot that is missing stands still."""
     last_touch: str = ""
     """Robot that touched the ball last, in this tick or before."""
-    disturbed: bool = False
-    """A robot that takes no part in the game has touched the ball in this tick."""
 
     def without(self, robots: frozenset[str]) -> "Sight":
         """Returns the sight without robots that take no part in the game, and without their events.
@@ -44,7 +42,6 @@ class Sight(NamedTuple):
                 if event.kind in LEAVES or robots.isdisjoint((event.robot, event.other))
             ],
             last_touch="" if self.last_touch in robots else self.last_touch,
-            disturbed=any(each.robot in robots for each in self.events if each.kind in (Kind.TOUCH, Kind.KICK)),
         )
 
     @property

@@ -43,7 +43,7 @@ class Stretch:
 
     def watch(self, duration_s: float, sight: Sight, ends: Ends, rules: Rules) -> Scene:
         """Takes a tick of `duration_s`, and returns it as the rules see it."""
-        self.touches.watch(sight, ends, self.released, rules.pass_m)
+        self.touches.watch(sight, ends, self.released, rules)
         self._carrier.watch(duration_s, sight)
         self.touches.watch_rivals(duration_s, sight, self._carrier.robot)
         return Scene(duration_s, sight, rules, ends, self.touches, self._carrier)
@@ -60,6 +60,7 @@ class Stretch:
 
     def begin_play(self, ball: Point, late: Team) -> None:
         """Goes on as play, with or without the set piece having been taken; `late` is the team that did not in time."""
+        self.touches.overdue = bool(late)
         if not self.touches.robots and self.piece is not State.DROP_BALL:
             self.piece, self.touches.late = State.PLAY, late
         self._resting_at, self._resting_s = ball, 0.0

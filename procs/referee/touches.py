@@ -5,6 +5,7 @@ import math
 from procs.model.events import Kind
 from procs.model.field import Point
 from procs.model.teams import Ends, Team, team_number
+from procs.referee.rules import Rules
 from procs.referee.sight import Sight
 
 _LOST_S = 0.25  # a robot that does not touch the ball for longer does not carry it any more
@@ -24,37 +25,47 @@ class Touches:
         """Robot that touched the ball last; of several in a tick the one that the sight names."""
         self.place = spot
         """Place of the last touch; before the first, that of the ball."""
-        self.disturbed = False
-        """A robot that takes no part in the game has touched the ball since."""
         self.again = False
         """The taker has touched the ball again after a free roll, before another robot did."""
         self.double = False
         """The taker had mates on the field at that second touch."""
         self.late = Team.NONE
         """Team that did not take its set piece in time: it plays on, but a goal still needs a second robot."""
+        self.passed = False
+        """A robot of the taker's team has played the ball after it had rolled freely off a mate of it."""
+        self.overdue = False
+        """The time for the set piece was over before the ball was set free."""
         self.intercepted = False
         """A rival of the taker has carried or kicked the ball."""
+        self._freed_by = ""  # the robot of the taker's team off which the ball rolled freely first
         self._rival_s = 0.0  # for which a rival carries it
         self.owes_pass = Team.NONE
         """Team that won the ball in its own half and has not passed it since."""
 
-    def watch(self, sight: Sight, ends: Ends, released: bool, pass_m: float) -> None:
+    def watch(self, sight: Sight, ends: Ends, released: bool, rules: Rules) -> None:
         """Takes the touches of a tick; `released`: the ball has been set free since the last touch of the taker."""
         for robot, place in sight.touching.items():
             if robot != self.last:
-                self._won(robot, place, ends, pass_m)
+                self._won(robot, place, ends, rules.pass_m)
+            if released or math.dist(place, self.place) >= rules.moved_m:
+                self._received(robot)
             if released and robot == self.taker and self.robots == {robot} and not self.again:
                 self.again, self.double = True, bool(sight.mates(robot))
             self.taker = self.taker or robot
             self.robots.add(robot)
-            self.last, self.place, self.disturbed = robot, place, False
-        self.disturbed = self.disturbed or sight.disturbed
+            self.last, self.place = robot, place
 
     def watch_rivals(self, duration_s: float, sight: Sight, carrier: str) -> None:
         """Notes whether rivals of the taker have had the ball; `carrier` is the robot that carries it now."""
         kickers = {event.robot for event in sight.events if event.kind is Kind.KICK}
         self._rival_s = self._rival_s + duration_s if self._is_rival(carrier) else 0.0
         self.intercepted = self.intercepted or self._rival_s > _HAS_S or any(map(self._is_rival, kickers))
+
+    def _received(self, robot: str) -> None:
+        """Notes the touch of a ball that has rolled freely since the touch before, if a team mate set it free."""
+        if not self._freed_by and self.last and not self._is_rival(self.last):
+            self._freed_by = self.last
+        self.passed = self.passed or (bool(self._freed_by) and robot != self._freed_by and not self._is_rival(robot))
 
     def _is_rival(self, robot: str) -> bool:
         return bool(robot and self.taker) and team_number(robot) is not team_number(self.taker)

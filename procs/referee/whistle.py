@@ -143,8 +143,8 @@ class Whistle(Match):
 
     def _count_goal(self, event: Event, sight: Sight) -> goals.Verdict:
         """Judges a ball in a goal, and counts the goal if it is one."""
-        place, stretch = Point(event.x_m, event.y_m), self._stretch
-        verdict = goals.judge(place, stretch.piece, stretch.touches, sight, self.ends, self.rules.field)
+        stretch = self._stretch
+        verdict = goals.judge(event, stretch.piece, stretch.touches, sight, self.ends, self.rules.field)
         if verdict.scorer:
             self.goal(verdict.scorer)
         return verdict

@@ -19,7 +19,11 @@ from tests.procs.referee.script import CYAN, MAGENTA, Script
 
 CASES = {
     "ball over the touch line, over the goal line, without a touch": ["rules.test_calls"],
-    "goal, also an own goal": ["rules.test_goals", "fouls.test_own_goal_straight_from_a_set_piece_is_a_corner"],
+    "goal, also an own goal": [
+        "rules.test_goals",
+        "fouls.test_own_goal_straight_from_a_set_piece_is_a_corner",
+        "set_pieces.test_ball_in_the_goal_without_a_touch_is_dropped",
+    ],
     "kick-off: all in their own half": [
         "rules.test_positions_of_robots_at_a_set_piece",
         "set_pieces.test_halves_are_kept_until_the_kick_off_is_taken",
@@ -28,7 +32,12 @@ CASES = {
     "set piece: one defender may be in its penalty area": [
         "fouls.test_one_defender_may_stand_in_its_area_at_a_set_piece"
     ],
-    "set piece: the ball moves 0.5 m freely": ["fouls.test_set_piece_is_play_after_half_a_metre_without_touch"],
+    "set piece: the ball moves 0.5 m freely": [
+        "fouls.test_set_piece_is_play_after_half_a_metre_without_touch",
+        "set_pieces.test_goal_needs_a_free_roll_off_the_taker",
+        "set_pieces.test_ball_carried_to_a_mate_has_not_rolled_freely",
+        "set_pieces.test_free_roll_is_not_needed_after_seven_seconds",
+    ],
     "set piece: open to all after 7 s": ["rules.test_set_piece_that_no_robot_takes_becomes_play_in_time"],
     "set piece: taken by the wrong team, or robots come near": [
         "fouls.test_wrong_taker_has_the_set_piece_repeated",
@@ -39,6 +48,7 @@ CASES = {
     "set piece: a mate touches the ball before a goal counts": [
         "fouls.test_set_piece_goal_counts_only_after_a_second_robot",
         "fouls.test_set_piece_goal_counts_after_a_mate_played",
+        "set_pieces.test_direct_shot_off_a_defender_is_a_corner",
         "set_pieces.test_late_set_piece_needs_a_second_robot_of_its_team",
     ],
     "set piece: the taker plays the ball once": [

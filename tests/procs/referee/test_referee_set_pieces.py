@@ -112,3 +112,90 @@ def test_dropped_ball_needs_two_robots_however_late() -> None:
     script.touch("cyan2")
     script.goal(11.2, "cyan2")
     assert script.reasons == ["deadlock", "no second robot touched the ball"]
+
+
+@pytest.mark.parametrize(("roll_m", "score"), [(0.4, (0, 0)), (0.6, (1, 0))])
+def test_goal_needs_a_free_roll_off_the_taker(roll_m: float, score: tuple[int, int]) -> None:
+    script = Script().started()
+    script.touch("cyan2")
+    script.roll(roll_m, 0.0)
+    script.touch("cyan3")
+    script.roll(3.0, 0.0)
+    script.goal(11.2, "cyan3")
+    assert script.score == score
+    assert script.reasons == ([] if any(score) else ["the ball of the set piece did not roll freely"])
+
+
+def test_ball_carried_to_a_mate_has_not_rolled_freely() -> None:
+    script = Script().started()
+    script.carry("cyan2", 1.5)
+    script.touch("cyan3")
+    script.roll(3.0, 0.0)
+    script.goal(11.2, "cyan3")
+    assert (script.score, script.state) == ((0, 0), (State.GOAL_KICK, MAGENTA, True))
+
+
+def test_mate_may_set_the_ball_free_for_another() -> None:
+    script = Script().started()
+    script.touch("cyan2")
+    script.roll(0.2, 0.0)
+    script.touch("cyan3")
+    script.roll(1.0, 0.0)
+    script.touch("cyan2")
+    script.goal(11.2, "cyan2")
+    assert (script.score, script.reasons) == ((1, 0), [])
+
+
+@pytest.mark.parametrize("touched", [True, False])
+def test_free_roll_is_not_needed_after_seven_seconds(touched: bool) -> None:
+    script = Script().started()
+    if touched:
+        script.touch("cyan2")
+    script.wait(7.1)
+    assert script.state[0] is State.PLAY
+    for robot in ("cyan2", "cyan3"):
+        script.roll(script.ball.x_m + 0.2, 0.0)
+        script.touch(robot)
+    script.goal(11.2, "cyan3")
+    assert (script.score, script.reasons) == ((1, 0), [])
+
+
+@pytest.mark.parametrize(("kind", "score"), [(Kind.TOUCH, (0, 0)), (Kind.KICK, (1, 0))])
+def test_direct_shot_off_a_defender_is_a_corner(kind: Kind, score: tuple[int, int]) -> None:
+    script = Script().started()
+    script.touch("cyan2", Kind.KICK)
+    script.roll(10.0, 0.0)
+    script.touch("magenta1", kind)
+    script.goal(11.2, "magenta1")
+    corner = (State.CORNER_KICK, CYAN, True)
+    assert (script.score, script.state) == (score, (State.KICK_OFF, MAGENTA, True) if any(score) else corner)
+
+
+def test_shot_of_a_mate_off_a_defender_counts() -> None:
+    script = Script().playing()
+    script.roll(3.0, 0.0)
+    script.touch("cyan3")
+    script.roll(10.0, 0.0)
+    script.touch("magenta1")
+    script.goal(11.2, "magenta1")
+    assert script.score == (1, 0)
+
+
+@pytest.mark.parametrize("x_m", [11.2, -11.2])
+def test_ball_in_the_goal_without_a_touch_is_dropped(x_m: float) -> None:
+    script = Script().started()
+    script.roll(3.0, 0.0)
+    assert script.state[0] is State.PLAY
+    script.goal(x_m, "")
+    assert (script.score, script.state) == ((0, 0), (State.DROP_BALL, Team.NONE, True))
+    script = Script().started()
+    script.goal(x_m, "")
+    assert (script.score, script.state) == ((0, 0), (State.DROP_BALL, Team.NONE, True))
+
+
+def test_ball_put_into_the_goal_by_hand_is_no_goal() -> None:
+    script = Script().playing()
+    script.roll(3.0, 0.0)
+    script.touch("cyan2")
+    script.goal(11.2, "")
+    assert (script.score, script.state) == ((0, 0), (State.DROP_BALL, Team.NONE, True))
