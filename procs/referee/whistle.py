@@ -88,8 +88,8 @@ class Whistle(Match):
         if self.stopped:
             self._guard_ball(duration_s, sight)
         elif self.state is not State.PLAY and not self.shootout:
-            self._stretch.watch(duration_s, sight, self.ends, self.rules)
-            if self._stretch.rolled(sight.ball, self.rules) or self._set_piece_is_late:
+            scene = self._stretch.watch(duration_s, sight, self.ends, self.rules)
+            if self._is_taken(scene) or self._set_piece_is_late:
                 self._play(sight.ball)
 
     def _guard_ball(self, duration_s: float, sight: Sight) -> None:
@@ -168,13 +168,18 @@ class Whistle(Match):
             self._give_free_kick(grave)
         elif self._repeat(scene):
             return
-        elif (self.state is State.DROP_BALL and touched) or self._stretch.rolled(ball, self.rules):
+        elif self._is_taken(scene):
             self._play(ball)
         elif self._set_piece_is_late:
             if self.state is State.PENALTY and not touched:
                 self.interrupt(self._goal_kick(), Reason.NOT_TAKEN)
             else:
                 self._play(ball, late=True)
+
+    def _is_taken(self, scene: Scene) -> bool:
+        """Returns whether the set piece becomes play: its ball has rolled freely, or a dropped one was touched."""
+        rolled = self._stretch.rolled(scene.sight.ball, self.rules)
+        return rolled or (self.state is State.DROP_BALL and bool(scene.touches.robots))
 
     def _watch_penalty(self, scene: Scene) -> None:
         """Watches a penalty that is one shot: one of those that decide a match, or the last act of a half.

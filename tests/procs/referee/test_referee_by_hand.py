@@ -210,3 +210,13 @@ def test_start_by_hand_excuses_the_keeper_that_plays() -> None:
     script.tick()
     assert script.state == (State.PENALTY, CYAN, False)
     assert script.reasons == []
+
+
+def test_dropped_ball_led_by_hand_is_play_after_a_touch() -> None:
+    script = led_by_hand()
+    ask(script, "drop_ball")
+    ask(script, "start")
+    script.tick()
+    assert script.state == (State.DROP_BALL, 0, False)
+    script.touch("cyan2")
+    assert script.state == (State.PLAY, 0, False)
