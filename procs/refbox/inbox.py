@@ -23,7 +23,7 @@ class Inbox:
 
         Raises:
             ProtocolError: the peer sends a message that is too long; it is dropped, and those before it follow.
-            EOFError: the peer has closed the connection.
+            EOFError: the peer sends no more, and all that it sent was returned; it may still read.
             OSError: the connection is lost.
         """
         if not self._unread:

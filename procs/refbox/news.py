@@ -1,10 +1,12 @@
 """Commands of a RefBox that lead from one state of the game to the next."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from lcmtypes.soccer import game_event_t, game_state_t
 from procs.model.robot import PLAYERS, Player, number_of_player, team_of_player
 from procs.refbox.protocol import Command
+from procs.referee import halves
 from procs.referee.reasons import OFF_FIELD, Reason
 
 TEAMS = {game_state_t.TEAM_CYAN: "cyan", game_state_t.TEAM_MAGENTA: "magenta"}
@@ -36,15 +38,17 @@ def news(
     is off the field for no decision in it is under repair.
     """
     if before is None:
-        commands = _half(now) + _robots(game_state_t(), now, _in_force(events[: now.decisions], now), players)
+        in_penalties = now.half == halves.PENALTIES and now.state not in _BREAKS
+        score = _until_penalty(now, events) if in_penalties else _half(now.half) + _scores(game_state_t(), now)
+        commands = score + _robots(game_state_t(), now, _in_force(events[: now.decisions], now), players)
         return commands + _break(now) + _stopped(now) + ([] if now.stopped else [Command("START")])
     if _is_new_match(before, now, events):
         return [Command("RESET"), *news(None, now, events, players)]
-    commands = _robots(before, now, events, players)
+    commands = _scores(before, now) + _robots(before, now, events, players)
     if now.state != before.state and now.state in _BREAKS:
         return commands + _break(now)
     if now.half != before.half or _begins_again(before, now):
-        commands += _half(now)
+        commands += _half(now.half)
     if now.stopped and _piece(now) != _piece(before):
         commands += [Command("STOP"), *_stopped(now)] if not before.stopped else _stopped(now)
     if before.stopped and not now.stopped:
@@ -62,7 +66,7 @@ def _robots(
     events: Sequence[game_event_t],
     players: Mapping[str, Player],
 ) -> list[Command]:
-    """Returns the goals, the cards, and the robots that left the field, between two states."""
+    """Returns the cards, and the robots that left the field, between two states."""
     newer = events[before.decisions : now.decisions]
     causes = {robot: _cause(robot, newer) for robot in now.sent_off}
     off = [
@@ -77,7 +81,7 @@ def _robots(
         for robot, cause in causes.items()
         if cause is None and robot not in before.sent_off
     ]
-    return _scores(before, now) + _cards(newer, players) + off + repairs
+    return _cards(newer, players) + off + repairs
 
 
 def _in_force(events: Sequence[game_event_t], now: game_state_t) -> list[game_event_t]:
@@ -123,8 +127,8 @@ def _break(now: game_state_t) -> list[Command]:
     return [Command("STOP"), Command("END_GAME")] + [Command("GAMEOVER")] * over
 
 
-def _half(now: game_state_t) -> list[Command]:
-    return [Command(_HALVES[now.half])] if now.half in _HALVES else []
+def _half(half: int) -> list[Command]:
+    return [Command(_HALVES[half])] if half in _HALVES else []
 
 
 def _stopped(now: game_state_t) -> list[Command]:
@@ -136,6 +140,18 @@ def _scores(before: game_state_t, now: game_state_t) -> list[Command]:
     for team in TEAMS.values():
         more = getattr(now, f"score_{team}") - getattr(before, f"score_{team}")
         commands += [Command("GOAL" if more > 0 else "SUBGOAL", team)] * min(abs(more), _GOALS_MAX)
+    return commands
+
+
+def _until_penalty(now: game_state_t, events: Sequence[game_event_t]) -> list[Command]:
+    """Returns what leads to the deciding penalty at hand: a drawn overtime, its end, and the penalties scored."""
+    scored = Counter(event.team for event in events[: now.decisions] if event.goal and event.half == halves.PENALTIES)
+    drawn = game_state_t()
+    before = [getattr(now, f"score_{name}") - scored[team] for team, name in TEAMS.items()]
+    drawn.score_cyan = drawn.score_magenta = max(0, min(before))
+    commands = [*_half(halves.FOURTH), *_scores(game_state_t(), drawn), Command("STOP"), Command("END_GAME")]
+    for goal in _scores(drawn, now):
+        commands += [Command("PENALTY", goal.team), goal]
     return commands
 
 

@@ -36,7 +36,8 @@ class RefBoxServer(Component):
     First come the half, the goals, the cards, the robots off the field, and the break or the set piece at hand.
 
     The reports of base stations are checked and counted. A base station that leaves, or does not read what it is sent,
-    is cut off: no base station can hold the game up.
+    is cut off: no base station can hold the game up. One that has ended its side of the connection may still listen: it
+    is told all decisions, until it does not take them any more or another one needs its place.
     """
 
     stage = "post_loop"
@@ -96,7 +97,11 @@ class RefBoxServer(Component):
                 connection, address = self._listening.accept()
             except OSError:  # it has left before it was let in, or the process has no descriptor left
                 break
-            if len(self._stations) + len(newcomers) >= self.config.stations:
+            silent = next((station for station in self._stations if station.silent), None)
+            full = len(self._stations) + len(newcomers) >= self.config.stations
+            if full and silent is not None:
+                self._cut_off(silent, "reports no more, and another one takes its place")
+            elif full:
                 self.log.warning(f"base station {address[0]} is turned away: {self.config.stations} are connected")
                 connection.close()
                 continue

@@ -1,5 +1,6 @@
 """A base station that is connected to the RefBox of this run: what it is sent, and the world states that it reports."""
 
+import select
 import socket
 
 from fwk import Logger
@@ -18,18 +19,23 @@ class Station:
         """Number of world states that it has reported."""
         self.refused = 0
         """Number of its messages that were no world states."""
+        self.silent = False
+        """It has ended its side of the connection: it reports no more, and may have left."""
         self._connection = connection
         self._log = log
         self._inbox = Inbox(connection)
 
     def hear(self) -> bool:
-        """Takes what has arrived; returns False if the base station has left."""
+        """Takes what has arrived; returns False if the base station has certainly left."""
         try:
             arrived = self._inbox.take()
         except ProtocolError as error:
             self._refuse(error)
             return True
-        except (EOFError, OSError):
+        except EOFError:
+            self.silent = True
+            return not self._is_broken()
+        except OSError:
             return False
         for message in arrived:
             self._take(message)
@@ -45,6 +51,12 @@ class Station:
     def close(self) -> None:
         """Cuts the base station off."""
         self._connection.close()
+
+    def _is_broken(self) -> bool:
+        """Returns whether the connection is closed in both directions; of a peer that may still read only one is."""
+        poll = select.poll()
+        poll.register(self._connection, 0)  # errors and hang-ups are reported without being asked for
+        return bool(poll.poll(0))
 
     def _take(self, message: bytes) -> None:
         try:

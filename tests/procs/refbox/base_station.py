@@ -25,6 +25,10 @@ class BaseStation:
         """Sends bytes, which no RefBox expects."""
         self._connection.sendall(data)
 
+    def end(self) -> None:
+        """Says no more, but listens."""
+        self._connection.shutdown(socket.SHUT_WR)
+
     def close(self) -> None:
         """Leaves."""
         self._connection.close()

@@ -4,9 +4,14 @@ import pytest
 from pydantic import ValidationError
 
 from lcmtypes.soccer import game_event_t, game_state_t
+from procs.model.game_states import State
+from procs.model.teams import Team
 from procs.refbox.news import news
 from procs.refbox.protocol import LONGEST, Addresses, Command, ProtocolError, Stream, decode, encode
+from procs.referee.orders import carry_out
 from procs.referee.reasons import Reason
+from procs.referee.sight import Sight
+from tests.procs.referee.script import Script
 
 ADDRESSES = Addresses().model_dump()
 
@@ -204,3 +209,34 @@ def test_robot_with_a_card_parks_no_others() -> None:
             *told,
             Command("START"),
         ]
+
+
+def test_newcomer_is_told_of_the_deciding_penalties() -> None:
+    events = [game_event_t() for _ in range(4)]
+    for event, half, team in zip(events, (1, 2, 5, 5), (1, 2, 2, 2), strict=True):
+        event.goal, event.half, event.team = True, half, team
+    now = state(game_state_t.PENALTY, 1, half=5, score_cyan=1, score_magenta=3, decisions=4)
+    told = news(None, now, events)
+    penalties = ["PENALTY magenta", "GOAL magenta"] * 2 + ["PENALTY cyan"]
+    assert [f"{command.name} {command.team}".strip() for command in told] == [
+        "SECOND_HALF_OVERTIME",
+        "GOAL cyan",
+        "GOAL magenta",
+        "STOP",
+        "END_GAME",
+        *penalties,
+    ]
+    match = Script(automatic=False).whistle
+    assert [carry_out(match, Sight(match.spot), each.name.lower(), each.team) for each in told] == [""] * len(told)
+    assert (match.half, match.state, match.team, match.score) == (5, State.PENALTY, Team.CYAN, {1: 1, 2: 3})
+    shot = state(game_state_t.PENALTY, 1, half=5, score_cyan=1, score_magenta=3, decisions=4, stopped=False)
+    assert news(None, shot, events) == [*told, Command("START")]
+
+
+def test_newcomer_during_penalties_gets_a_corrected_score() -> None:
+    """A goal that was taken back is still in the history."""
+    goal = game_event_t()
+    goal.goal, goal.half, goal.team = True, 5, 1
+    told = news(None, state(game_state_t.PENALTY, 2, half=5, score_cyan=0, score_magenta=1, decisions=1), [goal])
+    assert [command.name for command in told if command.team == "magenta"] == ["PENALTY", "GOAL", "PENALTY"]
+    assert not any(command.team == "cyan" for command in told)

@@ -319,3 +319,33 @@ def test_match_of_the_launch_file_is_reported(refbox: socket.socket) -> None:
     assert all(robot["pose"][1] < 0.5 for robot in last["robots"])  # in the own half before the kick-off
     assert last["balls"][0]["position"] == pytest.approx([0.0, 0.0, 0.0], abs=0.3)
     assert last["balls"][0]["confidence"] > 0.9
+
+
+def test_half_closed_station_is_heard_and_still_told() -> None:
+    server = Bench(RefBoxServer, "world/refbox", port=0)
+    with contextlib.closing(BaseStation(server.component.port)) as station:
+        station.say(json.dumps(EMPTY).encode() + b"\0" + b"{")
+        station.end()
+        server.port("game_state").put(state=game_state_t.PLAY, half=1)
+        server.iterate(4)
+        assert any("reports the world state of 'A'" in line.text for line in server.logged)
+        server.port("game_state").put(state=game_state_t.DROP_BALL, half=1, stopped=True)
+        server.iterate()
+        assert [each["command"] for each in station.heard(5)][-2:] == ["STOP", "DROP_BALL"]
+    for stopped in (False, True, False, True):
+        server.port("game_state").put(state=game_state_t.DROP_BALL, half=1, stopped=stopped)
+        server.iterate()
+    server.finalize()
+    assert any("1 world states reported, 0 messages refused" in line.text for line in server.logged)
+
+
+def test_half_closed_station_makes_room_for_another() -> None:
+    server = Bench(RefBoxServer, "world/refbox", port=0, stations=1)
+    with contextlib.closing(BaseStation(server.component.port)) as silent:
+        silent.end()
+        server.port("game_state").put(state=game_state_t.PLAY, half=1)
+        server.iterate(2)
+        with contextlib.closing(BaseStation(server.component.port)) as station:
+            server.iterate()
+            assert station.heard(1)[0]["command"] == "WELCOME"
+    server.finalize()
