@@ -1,6 +1,7 @@
 """Conditions for the start of a set piece: robots stand where the rules allow it, and no team waits for a robot."""
 
 from procs.model.field import Field
+from procs.model.game_states import State
 from procs.model.teams import Ends, Team, team_number
 from procs.referee.cards import Cards
 from procs.referee.positions import misplaced
@@ -12,6 +13,15 @@ def misplaced_robots(restart: Restart, sight: Sight, ends: Ends, field: Field) -
     """Returns the robots that are misplaced: distances are those to the ball, which may lie beside the spot."""
     keeper = sight.goalkeeper(restart.team.other)
     return misplaced(restart._replace(spot=sight.ball), sight.robots, ends, field, keeper)
+
+
+def keeper_is_away(restart: Restart, sight: Sight, field: Field) -> bool:
+    """Returns whether the goalkeeper that faces a penalty is not between its posts yet.
+
+    It is misplaced only outside its goal area, but the penalty waits for it.
+    """
+    keeper = sight.goalkeeper(restart.team.other)
+    return restart.state is State.PENALTY and bool(keeper) and abs(sight.robots[keeper].y_m) > field.goal_width_m / 2
 
 
 def incomplete_team(sight: Sight, cards: Cards, least_robots: int) -> Team:

@@ -14,7 +14,7 @@ from procs.referee.fouls.dribbling import dribbling
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.fouls.pushing import collision
 from procs.referee.fouls.set_piece import breach
-from procs.referee.line_up import incomplete_team, misplaced_robots
+from procs.referee.line_up import incomplete_team, keeper_is_away, misplaced_robots
 from procs.referee.match import Match
 from procs.referee.reasons import Reason
 from procs.referee.restarts import Restart
@@ -112,7 +112,8 @@ class Whistle(Match):
             return
         longest_s = rules.ends_s if self._changing_ends else rules.positions_s
         had_time = self.time_in_state_s >= stoppage_s + longest_s and self._ball.laid_s >= longest_s
-        ready = not self._ball.rolls and not misplaced_robots(self.restart, sight, self.ends, rules.field)
+        misplaced = misplaced_robots(self.restart, sight, self.ends, rules.field)
+        ready = not self._ball.rolls and not misplaced and not keeper_is_away(self.restart, sight, rules.field)
         if ready or had_time:
             self.start(sight)
 

@@ -66,7 +66,10 @@ CASES = {
         "match.test_penalty_that_is_not_taken_becomes_a_goal_kick",
         "match.test_penalty_that_is_touched_but_not_shot_becomes_play",
     ],
-    "penalty: the keeper stays in its area": ["match.test_penalty_is_repeated_when_the_keeper_leaves_its_area"],
+    "penalty: the keeper stays in its area": [
+        "match.test_penalty_is_repeated_when_the_keeper_leaves_its_area",
+        "set_pieces.test_penalty_waits_for_the_keeper_between_its_posts",
+    ],
     "penalty: a goal without a second robot": ["match.test_penalty_goal_counts_without_a_second_robot"],
     "deciding penalty: one shot": [
         "cases.test_deciding_penalty_is_one_shot",

@@ -199,3 +199,23 @@ def test_ball_put_into_the_goal_by_hand_is_no_goal() -> None:
     script.touch("cyan2")
     script.goal(11.2, "")
     assert (script.score, script.state) == ((0, 0), (State.DROP_BALL, Team.NONE, True))
+
+
+@pytest.mark.parametrize("comes", [True, False])
+def test_penalty_waits_for_the_keeper_between_its_posts(comes: bool) -> None:
+    """It has stood beside its post, in its goal area."""
+    script = Script(positions_s=3.0)
+    script.whistle.begin_half(5)
+    script.tick()
+    script.robots |= {"cyan2": Point(6.8, 0.0), "magenta1": Point(10.7, 1.5), "cyan3": Point(0.0, 4.0)}
+    script.robots |= {"magenta2": Point(2.0, 3.0), "magenta3": Point(2.0, -3.0)}
+    script.wait(2.5)
+    assert script.whistle.stopped
+    script.robots["magenta1"] = Point(10.7, 1.1 if comes else 1.5)
+    script.tick()
+    assert script.whistle.stopped is not comes
+    script.wait(1.5)
+    assert not script.whistle.stopped, "it has had its time"
+    script.robots["magenta1"] = Point(9.0, 0.0)
+    script.tick()
+    assert script.reasons == ["keeper left its area before the penalty"]
