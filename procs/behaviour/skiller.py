@@ -1,6 +1,7 @@
 """Carries out skills as commands: where to drive, when to handle the ball and when to kick."""
 
-from functools import partial
+from difflib import get_close_matches
+from functools import lru_cache, partial
 
 from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Request, RequestState, Serves, Writes, channel
 from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_state_t, motor_command_t
@@ -30,6 +31,8 @@ _KICK_TIMEOUT_S = 0.15
 """A kick without an answer by then has failed."""
 _SEEN_S = 0.5
 """Older percepts do not count."""
+_TOLD_MAX = 100
+"""Number of unknown skills that are told in the log; whoever makes names up does not fill it."""
 
 
 class SkillerConfig(Config):
@@ -75,6 +78,7 @@ class Skiller(Component):
         self._runner = SkillRunner()
         self._request: Request[skill_command_t] | None = None
         self._kick: Call | None = None
+        self._told: set[tuple[str, str]] = set()  # senders with the unknown skills that the log tells
         self.config_changed()
 
     def config_changed(self) -> None:
@@ -108,7 +112,11 @@ class Skiller(Component):
     def _begin(self, request: Request[skill_command_t]) -> None:
         command = request.value
         if command.skill not in SKILLS:
-            request.reject(f"no skill '{command.skill}'; there are {', '.join(SKILLS)}")
+            reason = _unknown(command.skill)
+            if (asked := (request.sender, command.skill)) not in self._told and len(self._told) < _TOLD_MAX:
+                self._told.add(asked)
+                self.log.warning(f"command {request.sequence} of {request.sender}: {reason}")
+            request.reject(reason)
         elif reason := mistake(command, self.config.field, self._bodies):
             request.reject(reason)
         else:
@@ -197,3 +205,9 @@ class Skiller(Component):
     def _handle(self, on: bool) -> None:
         self.dribble_command.value.on = on
         self.dribble_command.write()
+
+
+@lru_cache(maxsize=_TOLD_MAX)
+def _unknown(skill: str) -> str:
+    """Returns that no skill has this name, and the names that exist, the nearest first."""
+    return f"no skill '{skill}'; there are {', '.join(get_close_matches(skill, SKILLS, len(SKILLS), cutoff=0.0))}"

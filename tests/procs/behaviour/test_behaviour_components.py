@@ -188,6 +188,21 @@ def test_skill_that_does_not_exist_is_rejected(skiller: Bench) -> None:
     assert all(name in reason for name in SKILLS)
 
 
+def test_unknown_skill_is_logged_once_with_the_nearest_first(skiller: Bench) -> None:
+    for skill in ("shot", "shot", "get_bal", "shot"):
+        carry_out(skiller, skill=skill)
+    shot, get_ball = (line.text for line in skiller.logged)
+    assert shot.startswith("command 1 of test/sender: no skill 'shot'; there are shoot, ")
+    assert get_ball.startswith("command 3 of test/sender: no skill 'get_bal'; there are get_ball, ")
+    assert all(name in shot for name in SKILLS)
+
+
+def test_made_up_skills_do_not_fill_the_log(skiller: Bench) -> None:
+    for number in range(150):
+        carry_out(skiller, skill=f"skill {number}")
+    assert len(skiller.logged) == 100
+
+
 @pytest.mark.parametrize("target", [{"x_m": math.nan}, {"y_m": 1e300}, {"speed_m_s": math.inf}])
 def test_senseless_target_is_rejected_and_the_skill_goes_on(skiller: Bench, target: dict[str, float]) -> None:
     carry_out(skiller, 1, 2.0, skill="get_ball")
