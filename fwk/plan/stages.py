@@ -8,6 +8,7 @@ from fwk.component.declaration import EVERY_MAX, Declaration
 from fwk.model.errors import Problems, hint
 from fwk.model.ports import STAGES_MAX
 from fwk.plan.files.launch_file import Files
+from fwk.plan.files.overrides import PLACE
 from fwk.plan.files.source import Node
 from fwk.plan.files.templates import Asked
 
@@ -55,7 +56,8 @@ def stages_in(asked: Asked, declared: Declaration, stages: Sequence[str], proble
 def without_former_every(asked: Asked, declared: Declaration, problems: Problems) -> tuple[list[Node], int | None]:
     """Returns the settings without `every_ticks`, a setting of former cameras that is now `every`, and its value.
 
-    A component that has a setting of that name keeps it.
+    A component that has a setting of that name keeps it. One in a file that contradicts `every` is a mistake; one of
+    the command line wins.
     """
     layers, every = asked.settings(), None
     if _FORMER_EVERY in declared.config.model_fields:
@@ -67,6 +69,11 @@ def without_former_every(asked: Asked, declared: Declaration, problems: Problems
         layers[index] = Node({key: each for key, each in layer.value.items() if key != _FORMER_EVERY}, layer.place)
         if isinstance(node.value, int) and not isinstance(node.value, bool) and 1 <= node.value <= EVERY_MAX:
             every = node.value
+            if node.place != PLACE and asked.entry.every not in (None, every):
+                there = asked.node.at("every").place
+                text = f"{_FORMER_EVERY} is {every}, but every is {asked.entry.every} at {there}"
+                problems.add(node.place, asked.name, f"{text}; leave {_FORMER_EVERY} out")
+                continue
             text = (
                 f"the setting '{_FORMER_EVERY}' has become a key of the component; say 'every: {every}' beside 'use:'"
             )

@@ -246,7 +246,7 @@ class Replay:
                 continue
             with self._lives.failing(owed.life.plan, f"tick {done.tick}"):
                 made.append((owed.life, owed.life.iterate(owed.tick, owed.stage)))
-                self.iterations += owed.stage in owed.life.plan.stages
+                self.iterations += owed.stage in owed.life.plan.stages and owed.life.plan.due(done.tick)
         return made
 
     def _tell(self) -> None:

@@ -360,6 +360,13 @@ def test_former_every_ticks_is_every_and_noted_once(
     assert [note.partition(": ")[0].rpartition("/")[2] for note in notes if "every: 2" in note] == [place]
 
 
+@pytest.mark.parametrize("setting", ["    config: {every_ticks: 2}\n", "config:\n  it/odometer: {every_ticks: 2}\n"])
+def test_former_every_ticks_must_not_contradict_every(load: Load, setting: str) -> None:
+    right = r"every_ticks is 2, but every is 3 at (.*/)?it.yaml:4; leave every_ticks out"
+    with pytest.raises(PlanError, match=rf"it.yaml:[56]: it/odometer: {right}"):
+        load(f"{CAMERA}    every: 3\n{setting}")
+
+
 def test_former_every_ticks_of_a_template_is_noted_once(load: Load) -> None:
     notes: list[str] = []
     load(

@@ -1,6 +1,7 @@
 """A branch in memory: state and sequence numbers continue; late, lost and absent participants are handled or named."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,7 @@ from fwk.model.tick_events import (
 from fwk.recording.replay.branch import Branch
 from fwk.recording.replay.other_classes import with_classes
 from fwk.recording.replay.recording import Recording, RecordingError
+from fwk.recording.replay.replay import Replay
 from fwk.testing.plans import plan_of
 from lcmtypes.core import tick_record_t
 from lcmtypes.robot import imu_t
@@ -66,6 +68,28 @@ class Doubling(Sensor):
     def loop(self) -> None:
         super().loop()
         super().loop()
+
+
+class Seldom(Sensor):
+    """Iterates in every second tick."""
+
+    every = 2
+
+
+class Thinking(Sensor):
+    """Iterates in another stage."""
+
+    stage = "think"
+
+
+class Continuous(Component):
+    """Iterates at a rate of its own."""
+
+    rate_hz = 10
+    imu: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.imu.write()
 
 
 class Director(Sensor):
@@ -155,6 +179,51 @@ def test_numbers_of_another_class_have_no_gap(tmp_path: Path) -> None:
     assert numbers == [4, 5]
     assert sink.poses() == [(4, 1.0 + 2 + 3 + 7 + 8)]
     assert branch.differences == []
+
+
+def imu_ticks(recording: Recording) -> list[int]:
+    """The ticks in which a branch after tick 3 has messages of the sensor, up to tick 8."""
+    branch, sink = Branch(recording, {"r/sensor": ""}), Loud()
+    branch.run(3)
+    branch.go_on(8, sink)
+    return [time_us // PERIOD_US for channel, _, time_us in sink.messages if channel == "r/imu"]
+
+
+def test_every_of_another_class_counts_in_the_branch(tmp_path: Path) -> None:
+    recording = recorded(tmp_path / "log")
+    with_classes(recording, {"r/sensor": f"{__name__}:Seldom"})
+    assert imu_ticks(recording) == [4, 6, 8]
+
+
+def test_every_of_the_launch_file_stays_with_another_class(tmp_path: Path) -> None:
+    recording = recorded(tmp_path / "log")
+    sensor, counter = recording.plan.components
+    recording.plan = replace(recording.plan, components=(replace(sensor, every=4, offset=1), counter))
+    with_classes(recording, {"r/sensor": f"{__name__}:Seldom"})
+    assert imu_ticks(recording) == [5]
+
+
+@pytest.mark.parametrize(("kind", "turns"), [("Thinking", "in think"), ("Continuous", "continuously")])
+def test_another_class_of_other_stages_is_refused(tmp_path: Path, kind: str, turns: str) -> None:
+    text = f"{kind}: it iterates {turns}, the component of the run in sensor_acquire; give the class"
+    with pytest.raises(RecordingError, match=text):
+        with_classes(recorded(tmp_path / "log"), {"r/sensor": f"{__name__}:{kind}"})
+
+
+def test_stage_of_the_launch_file_stays_with_another_class(tmp_path: Path) -> None:
+    recording = recorded(tmp_path / "log")
+    sensor, counter = recording.plan.components
+    recording.plan = replace(recording.plan, components=(replace(sensor, stages=(0,)), counter))
+    with_classes(recording, {"r/sensor": f"{__name__}:Thinking"})
+    assert recording.plan.components[0].stages == (0,)
+
+
+def test_only_iterations_that_ran_are_counted(tmp_path: Path) -> None:
+    recording = recorded(tmp_path / "log", ticks=5)
+    with_classes(recording, {"r/sensor": f"{__name__}:Seldom"})
+    replay = Replay(recording)
+    replay.run()
+    assert replay.iterations == 5 + 2
 
 
 def test_a_late_iteration_ends_in_the_first_live_tick(tmp_path: Path) -> None:
