@@ -12,6 +12,7 @@ from fwk.model.ports import Ports
 from fwk.model.public_url import UrlError, parse_url
 from fwk.model.selection import chosen, groups_of
 from fwk.plan.cameras import check_cameras
+from fwk.plan.channel_settings import check_with_channels
 from fwk.plan.files.folders import folders_of, join
 from fwk.plan.files.launch_file import Files, find_launch_file, lay_over, read_files
 from fwk.plan.files.overrides import overrides
@@ -151,6 +152,7 @@ class _Loading:
         )
         check_clock(components, shared["clock"], problems)
         check_cameras(components, whole.channels, problems)
+        check_with_channels(components, whole.ports, problems)
         self._check_ports(made)
         check_processes(made.hosts, made.components, asked, problems)
         problems.stop_if_any()

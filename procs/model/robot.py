@@ -15,6 +15,9 @@ CYAN, MAGENTA = "cyan", "magenta"
 TEAM_NUMBERS = {CYAN: 1, MAGENTA: 2}
 """Number of each team in messages; 0 is none, or unknown."""
 
+NUMBER_MAX = 2**31 - 1
+"""Largest number of a robot; a greater one does not fit into messages."""
+
 _NAME = re.compile(r"(.*?)(\d*)")
 
 
@@ -69,7 +72,7 @@ class Player(BaseModel):
 
     team: Literal["cyan", "magenta"]
     """Cyan defends the goal at negative x."""
-    number: int = Field(ge=1, le=2**31 - 1)
+    number: int = Field(ge=1, le=NUMBER_MAX)
     """Number on the robot's back; no two players of a team have the same."""
 
 
@@ -94,9 +97,10 @@ def team_of(robot: str) -> str:
 
 @cache
 def number_of(robot: str) -> int:
-    """Returns the number at the end of the name; 0 for a name without a number."""
+    """Returns the number at the end of the name; 0 for a name without a number, or with one above `NUMBER_MAX`."""
     found = _NAME.fullmatch(robot)
-    return int(found[2]) if found and found[2] else 0
+    number = int(found[2]) if found and found[2] else 0
+    return number if number <= NUMBER_MAX else 0
 
 
 def player_of(robot: str, players: Mapping[str, Player]) -> Player | None:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import yaml
-from pydantic import FiniteFloat, NonNegativeInt, Strict, ValidationError
+from pydantic import BeforeValidator, FiniteFloat, NonNegativeInt, Strict, ValidationError
 
 from fwk.testing import Expectations
 from procs.model.realism import Realism
@@ -20,6 +20,7 @@ from procs.scenarios.mistakes import (
     team_mistakes,
     texts_of,
 )
+from procs.simulation.physics.start_places import three_numbers
 
 BOOK = Path(__file__).parent / "book"
 """Folder of the scenarios that come with the robots."""
@@ -40,7 +41,7 @@ class Scenario(Expectations):
     """Robots with all their components; their percepts are drawn from the truth, with errors."""
     dummies: list[str] = []
     """Robots that stand still."""
-    places: dict[str, tuple[_Number, _Number, _Number]] = {}
+    places: dict[str, Annotated[tuple[_Number, _Number, _Number], BeforeValidator(three_numbers)]] = {}
     """Start of robots: x in m, y in m, heading in rad (world frame); others take their default place."""
     ball: dict[str, _Number] = {}
     """Place and velocity of the ball once play has begun, as in `place_ball_t`; empty: the kick-off."""

@@ -58,6 +58,8 @@ def texts_of(error: ValidationError, where: str = "", known: Sequence[str] = ())
         path = [*([where] if where else []), *map(str, each["loc"])]
         if each["type"] == "extra_forbidden":
             found.append(": ".join(filter(None, (".".join(path[:-1]), _unknown(path[-1], known)))))
+        elif each["type"] == "missing":
+            found.append(": ".join(filter(None, (".".join(path[:-1]), f"{path[-1]} is missing"))))
         else:
             found.append(f"{'.'.join(path)}: {each['msg'].removeprefix('Value error, ')}")
     return found

@@ -1,11 +1,12 @@
 """Simulator of the match: moves the world by one tick, and replaces the hardware of every robot."""
 
 import math
-from typing import Literal
+from collections.abc import Collection, Iterable
+from typing import Annotated, Literal, TypeVar
 
 import numpy as np
+from pydantic import BeforeValidator, PositiveFloat, ValidationInfo, field_validator
 from pydantic import Field as Setting
-from pydantic import PositiveFloat, ValidationInfo, field_validator
 
 from fwk import Clock, Component, Config, Each, Logger, Reads, Serves, TimeSource, Writes, channel
 from lcmtypes.robot import battery_state_t, imu_t, kicker_drive_t, kicker_sensor_t, wheel_command_t, wheel_state_t
@@ -35,10 +36,12 @@ from procs.simulation.physics.reports import event_message, field_message, robot
 from procs.simulation.physics.room import Room
 from procs.simulation.physics.sensors import Encoders, Imu
 from procs.simulation.physics.settings import PhysicsSettings
-from procs.simulation.physics.start_places import Pose
+from procs.simulation.physics.start_places import Pose, three_numbers
 from procs.simulation.physics.world import World
 
-Starts = dict[str, tuple[float, float, float]]
+Starts = dict[str, Annotated[tuple[float, float, float], BeforeValidator(three_numbers)]]
+StuckWheels = dict[str, tuple[Literal[1, 2, 3], ...]]
+Named = TypeVar("Named", Starts, StuckWheels)
 _STOPPED: Wheels = (0.0, 0.0, 0.0)
 _BATTERY_US = US_PER_S  # from one message about the batteries to the next
 _FIELD_TICKS = 100  # from one message with the measures of the field to the next, for readers that come late
@@ -65,7 +68,7 @@ class SimulatorConfig(Config):
     """Starts of the robots: name to x in m, y in m and heading in rad (world frame); others take the default place."""
     command_timeout_s: PositiveFloat = 0.25
     """Wheels and ball handling stop when their command is older, and older than the previous tick."""
-    stuck_wheels: dict[str, tuple[Literal[1, 2, 3], ...]] = {}
+    stuck_wheels: StuckWheels = {}
     """Faults: wheels that do not turn, by robot: `{cyan3: [2]}`."""
 
     @field_validator("ball")
@@ -80,6 +83,31 @@ class SimulatorConfig(Config):
                         f"no ball of {2 * ball.radius_m:g} m goes into a goal with a {name} of {measure_m:g} m"
                     )
         return ball
+
+    @field_validator("players")
+    @classmethod
+    def _different(cls, players: Players, info: ValidationInfo) -> Players:
+        """Refuses two robots of one team and number, as far as the robots are known."""
+        if mistake := _double(_players_of(_robots_of(info) or (), players), players):
+            raise ValueError(mistake)
+        return players
+
+    @field_validator("starts", "stuck_wheels")
+    @classmethod
+    def _of_robots(cls, named: Named, info: ValidationInfo) -> Named:
+        """Refuses robots that the system does not have, as far as its robots are known."""
+        robots = _robots_of(info)
+        if robots is not None and (mistakes := _strangers(named, robots)):
+            raise ValueError("; ".join(mistakes))
+        return named
+
+    @field_validator("stuck_wheels")
+    @classmethod
+    def _each_once(cls, stuck: StuckWheels) -> StuckWheels:
+        for robot, wheels in stuck.items():
+            if double := next((wheel for wheel in wheels if wheels.count(wheel) > 1), None):
+                raise ValueError(f"{robot}: wheel {double} occurs twice; name each wheel once")
+        return stuck
 
     @field_validator("starts")
     @classmethod
@@ -127,12 +155,11 @@ class Simulator(Component):
         config, noise = self.config, noise_of(self.config.realism, self.config.errors)
         robots = sorted(self.wheel_command)
         for setting, named in (("starts", config.starts), ("stuck_wheels", config.stuck_wheels)):
-            for stranger in sorted(set(named) - set(robots)):
-                known = ", ".join(robots) or "none"
-                raise ValueError(f"{self.name}: {setting}: no robot '{stranger}'; there are: {known}")
-        found = {robot: player_of(robot, config.players) for robot in robots}
-        self._players = {robot: player for robot, player in found.items() if player}
-        self._check_players()
+            for mistake in _strangers(named, robots):
+                raise ValueError(f"{self.name}: {setting}: {mistake}")
+        self._players = _players_of(robots, config.players)
+        if mistake := _double(self._players, config.players):
+            raise ValueError(f"{self.name}: players: {mistake}")
         starts = {robot: Pose(*pose) for robot, pose in config.starts.items()}
         self._world = World(
             robots,
@@ -185,19 +212,9 @@ class Simulator(Component):
             self.field.value = field_message(self.config.field)
             self.field.write()
 
-    def _check_players(self) -> None:
-        """Refuses robots of one team and number. Names give those of robots without an entry in `players`."""
-        stated = self.config.players
-        for robot in sorted(self._players, key=lambda name: (name in stated, name)):
-            player, rivals = self._players[robot], self._players if robot in stated else stated
-            for other in sorted(name for name, rival in rivals.items() if rival == player and name != robot):
-                pair = f"{min(robot, other)} and {max(robot, other)} are both {player.team} {player.number}"
-                missing = "" if robot in stated else f"; players.{robot} is missing"
-                raise ValueError(f"{self.name}: players: {pair}{missing}")
-
     def _spoil_wheels(self) -> None:
-        for stranger in sorted(set(self.config.stuck_wheels) - set(self._world.robots)):
-            self.log.warning(f"stuck_wheels: no robot '{stranger}'; there are: {', '.join(self._world.robots)}")
+        for mistake in _strangers(self.config.stuck_wheels, self._world.robots):
+            self.log.warning(f"stuck_wheels: {mistake}")
         for name, robot in self._world.robots.items():
             robot.drive.stuck = frozenset(wheel - 1 for wheel in self.config.stuck_wheels.get(name, ()))
 
@@ -292,6 +309,34 @@ class Simulator(Component):
         truth.ball_vz_m_s = ball.vz_m_s if moves else 0.0
         truth.robots = [robot_message(robot, players.get(name), moves) for name, robot in self._world.robots.items()]
         self.ground_truth.write()
+
+
+def _robots_of(info: ValidationInfo) -> list[str] | None:
+    """Returns the robots of the system whose settings are checked, in order; None if they are not known yet."""
+    if info.context is None:
+        return None
+    return sorted(name.rpartition("/")[0] for name in info.context["channels"]["wheel_command"])
+
+
+def _strangers(named: Iterable[str], robots: Collection[str]) -> list[str]:
+    """Returns a sentence for each name that no robot has."""
+    known = ", ".join(robots) or "none"
+    return [f"no robot '{name}'; there are: {known}" for name in sorted(set(named) - set(robots))]
+
+
+def _players_of(robots: Iterable[str], stated: Players) -> Players:
+    found = {robot: player_of(robot, stated) for robot in robots}
+    return {robot: player for robot, player in found.items() if player}
+
+
+def _double(players: Players, stated: Players) -> str:
+    """Names two robots of one team and number. Names give those of robots without an entry in the stated players."""
+    for robot in sorted(players, key=lambda name: (name in stated, name)):
+        player, rivals = players[robot], players if robot in stated else stated
+        for other in sorted(name for name, rival in rivals.items() if rival == player and name != robot):
+            pair = f"{min(robot, other)} and {max(robot, other)} are both {player.team} {player.number}"
+            return pair if robot in stated else f"{pair}; players.{robot} is missing"
+    return ""
 
 
 def _command(drive: kicker_drive_t) -> KickerCommand:

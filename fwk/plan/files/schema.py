@@ -3,7 +3,17 @@
 from collections import Counter
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WithJsonSchema,
+    WrapValidator,
+    model_validator,
+)
 
 from fwk.clock import SECONDS_MAX, SPEED_MAX, SPEED_MIN
 from fwk.component.declaration import EVERY_MAX, RATE_MAX_HZ
@@ -31,6 +41,13 @@ def _as_scalar(value: Any) -> Any:
     if value is None or isinstance(value, dict | list):
         raise ValueError("Input should be a word or a number")
     return value
+
+
+def _whole_turns(value: Any, checked: ValidatorFunctionWrapHandler) -> Any:
+    try:
+        return checked(value)
+    except ValidationError:
+        raise ValueError(f"Input should be a whole number from 1 to {EVERY_MAX}") from None
 
 
 _WORDS = {"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]}
@@ -77,7 +94,7 @@ class ComponentEntry(_Entry):
     """Port to channel or pattern, where it differs from the class."""
     stage: Words | None = None
     """Stages, where they differ from those of the class."""
-    every: int | None = Field(None, ge=1, le=EVERY_MAX)
+    every: Annotated[int, Field(ge=1, le=EVERY_MAX), WrapValidator(_whole_turns)] | None = None
     """Iterates in one of `every` ticks, where the number differs from the class."""
     offset: Scalar | None = None
     """Shifts these ticks: it iterates when tick and offset have the same remainder modulo `every`."""

@@ -105,6 +105,9 @@ def _text(model: type[BaseModel], node: Node, details: ErrorDetails, what: str) 
         return f"'{_dotted(location[:-1])}' is {_short(node.at(*location[:-1]).plain())}; it should be longer"
     if kind == "missing":
         return f"the {what} '{_dotted(location)}' is missing; it has no default"
+    if kind == "too_long":
+        most, given = details["ctx"]["max_length"], _short(node.at(*location).plain())
+        return f"'{_dotted(location)}' is {given}; it should have at most {most} values"
     message = (
         _MAPPING
         if kind in _NO_MAPPING

@@ -147,8 +147,21 @@ class _Wiring:
         if port.images:
             right = hint(channel, alike, "add a camera that writes it, or name another channel")
             return f"'{channel}' has no vision master, and {spec.name} looks at it as '{port.attribute}'; {right}"
-        right = hint(channel, alike, "add a component that writes it, or name another channel")
+        right = self._idle_writers(port) or hint(
+            channel, alike, "add a component that writes it, or name another channel"
+        )
         return f"no component writes '{channel}', which {spec.name} reads as '{port.attribute}'; {right}"
+
+    def _idle_writers(self, port: Port) -> str:
+        """Names the components that write such messages to each channel of a pattern, and have none."""
+        idle = [
+            f"{spec.name} writes '{spec.pattern(each)}', which matches no channel"
+            for index, spec in enumerate(self._specs)
+            for each in spec.declaration.ports
+            if each.each and each.writes and not self._ports[index].get(each.attribute)
+            if messages.is_same_type(each.message_type, port.message_type)
+        ]
+        return ", and ".join(idle)
 
     def _fits(self, spec: ComponentSpec, port: Port, name: str) -> None:
         index, written = self._writers[name]

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from procs.model.field import Field, Point
 from procs.model.robot import Player, side_of
@@ -18,6 +18,17 @@ class Pose(NamedTuple):
 
 _PLACES = {1: (0.95, 0.0), 2: (0.3, 0.0), 3: (0.45, -0.4), 4: (0.45, 0.4), 5: (0.65, 0.0)}
 """By number: distance from the halfway line and offset to the left, as shares of half the length and half the width."""
+
+
+def three_numbers(pose: Any) -> Any:
+    """Returns the pose of a file if it is a list of three values, before these are checked.
+
+    Raises:
+        ValueError: it is anything else.
+    """
+    if isinstance(pose, list | tuple) and len(pose) == 3:
+        return pose
+    raise ValueError("it should be the numbers x_m, y_m and heading_rad, such as [-1.0, 0.5, 0.0]")
 
 
 def starting_pose(player: Player | None, field: Field) -> Pose:

@@ -51,6 +51,49 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """,
     ),
     Broken(
+        """
+        it.yaml:2: 'components.a/a.every' is 'two'; it should be a whole number from 1 to 1000000
+        it.yaml:3: 'components.b/b.every' is 0; it should be a whole number from 1 to 1000000
+        it.yaml:4: it/c: 'limits.turns' is [1, 2, 3]; it should have at most 2 values
+        """,
+        """
+        components:
+          a/a: {use: plan_parts:Odometer, every: two}
+          b/b: {use: plan_parts:Odometer, every: 0}
+          it/c: {use: plan_parts:Wheels, config: {limits: {turns: [1, 2, 3]}}}
+          it/pilot: {use: plan_parts:Pilot}
+        """,
+    ),
+    Broken(
+        """
+        it.yaml:3: it/b: gains: no robot 'y'; there is r
+        it.yaml:5: it/a: gains: no robot 'x'; there is r
+        """,
+        """
+        components:
+          r/motor: {use: plan_parts:Odometer}
+          it/b: {use: strange:Mixer}
+          it/a: {use: strange:Mixer, config: {gains: {
+            x: 1.0}}}
+        --- strange.py
+        from fwk import Component, Config, Each, Reads, channel
+        from lcmtypes.robot import odometry_t
+        from pydantic import ValidationInfo, field_validator
+        class Gains(Config):
+            gains: dict[str, float] = {"y": 1.0}
+            @field_validator("gains")
+            def check(cls, gains, info: ValidationInfo):
+                for name in gains if info.context else ():
+                    if f"{name}/odometry" not in info.context["channels"]["odometries"]:
+                        raise ValueError(f"no robot '{name}'; there is r")
+                return gains
+        class Mixer(Component):
+            stage = "think"
+            config: Gains
+            odometries: Each[Reads[odometry_t]] = channel("*/odometry")
+        """,
+    ),
+    Broken(
         "it.yaml:1: it/a: the setting 'key' is missing; it has no default",
         "components: {it/a: {use: plan_parts:Keyed}}",
     ),

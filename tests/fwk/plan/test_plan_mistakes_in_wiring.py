@@ -48,6 +48,21 @@ LONG = "x" * 60
         """,
     ),
     Broken(
+        "it.yaml:2: a/reader: no component writes 'a/odometry', which a/reader reads as 'odometry'; "
+        "it/feeder writes 'b*/odometry', which matches no channel",
+        """
+        components:
+          a/reader: {use: plan_parts:Reader}
+          it/feeder: {use: strange:Feeder, channels: {odometries: "b*/odometry"}}
+        --- strange.py
+        from fwk import Component, Each, Writes
+        from lcmtypes.robot import odometry_t
+        class Feeder(Component):
+            stage = "think"
+            odometries: Each[Writes[odometry_t]]
+        """,
+    ),
+    Broken(
         "it.yaml:4: a/reader (and 1 more): no component writes 'a/odometry', which a/reader reads as 'odometry'; "
         "add a component that writes it, or name another channel",
         """

@@ -56,6 +56,16 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
         ("robots: [anna]\nat_end: [ball_speed < 1]", ScenarioError, "'anna' plays for no team; names such as cyan1"),
         ("robots: [my robot]", ScenarioError, "'my robot' is not a name"),
         ("robots: [cyan2]\nplaces: {cyan3: [0, 0, 0]}", ScenarioError, "places: no robot 'cyan3'; there are cyan2"),
+        (
+            "robots: [cyan2]\nplaces: {cyan2: [0, 0]}",
+            ScenarioError,
+            "places.cyan2: it should be the numbers x_m, y_m and",
+        ),
+        (
+            "settings: {world/simulator: {players: {cyan2: {number: 1}}}}",
+            ScenarioError,
+            "mine.yaml: world/simulator.players.cyan2: team is missing",
+        ),
         ("ball: {x: 1}", ScenarioError, "ball: there is no 'x'; there are x_m"),
         ("realism: best", ScenarioError, "realism: .*'harsh'"),
         ("seed: -1", ScenarioError, "seed: "),

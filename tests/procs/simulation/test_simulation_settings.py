@@ -9,6 +9,7 @@ import pytest
 from fwk.model.errors import PlanError
 from fwk.testing import Bench, MemorySystem, launch_plan, system_of
 from lcmtypes.soccer import ground_truth_t, obstacle_t, world_model_t
+from procs.model.robot import Player, number_of, player_of
 from procs.simulation.simulator import Simulator
 
 LAUNCH = Path("launch").resolve()
@@ -74,12 +75,28 @@ robots:
             "world/simulator.starts={cyan1: [1,1,0], cyan2: [1.1,1,0]}",
             "cyan1 and cyan2 are 0.1 m apart; robots need 0.5 m",
         ),
+        (
+            "world/simulator.starts={cyan1: [0, 0]}",
+            "'starts.cyan1' is [0, 0]; it should be the numbers x_m, y_m and heading_rad, such as [-1.0, 0.5, 0.0]",
+        ),
+        ("world/simulator.starts={cyan7: [-1, 0, 0]}", "starts: no robot 'cyan7'; there are: cyan1, cyan2, "),
+        ("world/simulator.stuck_wheels={cyan7: [1]}", "stuck_wheels: no robot 'cyan7'; there are: cyan1, cyan2, "),
+        ("world/simulator.stuck_wheels={cyan1: [2, 2]}", "cyan1: wheel 2 occurs twice; name each wheel once"),
+        ("world/simulator.stuck_wheels={cyan1: [4]}", "'stuck_wheels.cyan1.0' is 4; it should be 1, 2 or 3"),
+        ("shared.players={cyan1: {team: cyan, number: 2}}", "players: cyan1 and cyan2 are both cyan 2"),
+        ("shared.players={cyan1: {team: cyan, number: 3000000000}}", "should be less than or equal to 2147483647"),
     ],
 )
 def test_nonsense_is_refused_by_name_and_limit(setting: str, mistake: str) -> None:
     with pytest.raises(PlanError) as raised:
         launch_plan("soccer-percepts.yaml", (setting,))
     assert mistake in str(raised.value)
+
+
+def test_number_too_large_for_messages_makes_no_player() -> None:
+    assert player_of("cyan2147483647", {}) == Player(team="cyan", number=2147483647)
+    assert player_of("cyan2147483648", {}) is None
+    assert number_of("cyan2147483648") == 0
 
 
 def test_robots_that_know_the_truth_have_no_negative_noise() -> None:
