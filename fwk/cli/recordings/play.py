@@ -98,10 +98,16 @@ def play(
         finally:
             playing.clear_line()
             bus.close()
-    played = {"messages": playing.messages, "rounds": player.rounds, "listener_too_slow": playing.overrun}
+    played = {
+        "messages": playing.messages,
+        "heard": playing.heard,
+        "rounds": player.rounds,
+        "listener_too_slow": playing.overrun,
+    }
     if playing.overrun:
         typer.echo(f"public bus: {playing.overrun} does not keep up; it may lack messages", err=True)
-    typer.echo(json.dumps(played) if as_json else f"{playing.messages} messages played on {url}")
+    unheard = "" if playing.heard or not playing.messages else "; no program listened: start one before, or add --wait"
+    typer.echo(json.dumps(played) if as_json else f"{playing.messages} messages played on {url}{unheard}")
 
 
 class _Playing:
@@ -111,8 +117,10 @@ class _Playing:
         self, player: Player, bus: PublicBus, channels: Channels, plugins: Plugins, keyboard: Keyboard
     ) -> None:
         self.messages = 0
+        self.heard = False
+        """Whether a program could listen to some of the messages."""
         self._player, self._bus, self._channels, self._plugins = player, bus, channels, plugins
-        self._publisher = PacedPublisher(monotonic_us, bus.send, bus.busy_listeners, _LISTENER_PATIENCE_US)
+        self._publisher = PacedPublisher(monotonic_us, self._send, bus.busy_listeners, _LISTENER_PATIENCE_US)
         self._controls = Controls(player)
         self._keyboard = keyboard
         self._shows = bool(keyboard.descriptors) and sys.stdout.isatty()
@@ -152,6 +160,10 @@ class _Playing:
                     self._publisher.put(self._bus.datagrams(*self._channels.renamed(channel, data)))
                     self.messages += 1
         self._publisher.tick()
+
+    def _send(self, datagram: bytes) -> None:
+        self.heard = True
+        self._bus.send(datagram)
 
     def _sleep(self, until_us: int) -> None:
         """Waits, at most until the status line is due; carries out the keys that are pressed meanwhile."""

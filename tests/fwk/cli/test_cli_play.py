@@ -8,6 +8,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
+from fwk.bus.public import PublicBus
 from fwk.cli.recordings.play import play
 from fwk.cli.recordings.play_controls import Controls
 from fwk.lcm.event_log import LogReader
@@ -91,6 +92,20 @@ def test_without_a_terminal_play_says_that_it_begins(tmp_path: Path, ports: Port
     done = CliRunner().invoke(app, words)
     assert done.stderr == "log: tick 4, 0.20 of 0.50 s, speed max: plays from here; Ctrl-C ends\n"
     assert json.loads(done.stdout)["rounds"] == 1
+
+
+@pytest.mark.parametrize("listens", [False, True])
+def test_play_says_whether_a_program_listened(tmp_path: Path, ports: PortBlock, listens: bool) -> None:
+    app = typer.Typer()
+    app.command()(play)
+    words = [str(recording(tmp_path / "log")), "--url", ports.public_url, "--speed", "max"]
+    other = PublicBus(ports.public_url) if listens else None
+    done, plain = CliRunner().invoke(app, [*words, "--json"]), CliRunner().invoke(app, words)
+    if other:
+        other.close()
+    assert json.loads(done.stdout)["heard"] is listens
+    unheard = "; no program listened: start one before, or add --wait"
+    assert plain.stdout.endswith(f" messages played on {ports.public_url}{'' if listens else unheard}\n")
 
 
 @pytest.mark.slow
