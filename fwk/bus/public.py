@@ -12,6 +12,8 @@ from fwk.bus.sockets import BUFFER_BYTES, LOOPBACK
 from fwk.lcm import wire
 from fwk.model.public_url import parse_url
 
+_ANY = "0.0.0.0"
+"""Interface: that of the route."""
 _SO_ATTACH_FILTER = 26
 _DATAGRAMS_AT_ONCE = 5000  # more fragments than the largest message has
 
@@ -47,13 +49,11 @@ class PublicBus:
         self._receiver.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
         self._receiver.bind((group, port))
         self._receiver.setblocking(False)
+        self._sender.bind(("", 0))
         try:
-            self._sender.sendto(b"", (group, port))  # an empty datagram: tests for a route, and binds
-            self._join(group, "0.0.0.0")
+            self._use(_ANY)
         except OSError:  # no multicast route: the loopback interface is always there
-            self._sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(LOOPBACK))
-            self._sender.sendto(b"", (group, port))
-            self._join(group, LOOPBACK)
+            self._use(LOOPBACK)
 
     def fileno(self) -> int:
         """Returns the descriptor of the receiving socket."""
@@ -105,9 +105,17 @@ class PublicBus:
                 return message[0].decode("utf-8", "replace"), message[1], address[1]
         return None
 
-    def _join(self, group: str, interface: str) -> None:
-        membership = socket.inet_aton(group) + socket.inet_aton(interface)
-        self._receiver.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+    def _use(self, interface: str) -> None:
+        """Sends and receives through an interface.
+
+        The search for a route sends nothing, because LCM in Java complains of datagrams without content.
+        """
+        group, address = self._address[0], socket.inet_aton(interface)
+        self._sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, address)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            probe.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, address)
+            probe.connect(self._address)
+        self._receiver.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(group) + address)
 
 
 def _ignore_source(receiver: socket.socket, port: int) -> None:

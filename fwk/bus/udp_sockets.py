@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
-_TABLE = Path("/proc/net/udp")
+_TABLES = Path("/proc/net/udp"), Path("/proc/net/udp6")
 # Linux's sock_diag (netlink/diag.h, inet_diag.h): a request for sockets, and what the kernel answers for each.
 _SOCK_DIAG, _SOCK_DIAG_BY_FAMILY = 4, 20
 _REQUEST_AND_DUMP, _ERROR, _DONE = 0x301, 2, 3
@@ -62,11 +62,11 @@ def _asked_for(port: int, family: int) -> Iterator[UdpSocket]:
 
 
 def _in_table(port: int) -> Iterable[UdpSocket]:
-    """Reads the table twice: the kernel passes over a socket if another one is closed while the table is read."""
+    """Reads the tables twice: the kernel passes over a socket if another one is closed while a table is read."""
     ending, found = f":{port:04X}", {}
-    for _ in range(2):
-        with suppress(OSError):
-            for line in _TABLE.read_text().splitlines():
+    for table in _TABLES * 2:
+        with suppress(OSError):  # a kernel without IPv6
+            for line in table.read_text().splitlines():
                 if ending in line:
                     columns = line.split()
                     if columns[1].endswith(ending):

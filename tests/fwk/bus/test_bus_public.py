@@ -34,6 +34,20 @@ def test_a_program_that_sends_is_a_listener_at_once(bus: PublicBus, ports: PortB
     other.close()
 
 
+def test_opening_the_bus_sends_nothing(ports: PortBlock) -> None:
+    group, _, port = ports.public_url.removeprefix("udpm://").partition("?")[0].partition(":")
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as java:
+        java.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        java.bind((group, int(port)))
+        opened = PublicBus(ports.public_url)  # joins the group, also for the other socket
+        again = PublicBus(ports.public_url)
+        again.publish("wish", b"1")
+        java.settimeout(5.0)
+        assert b"wish" in java.recv(1000), "the first datagram"
+        opened.close()
+        again.close()
+
+
 def test_a_socket_of_ipv6_can_listen_too(bus: PublicBus, ports: PortBlock) -> None:
     port = int(ports.public_url.partition("?")[0].rpartition(":")[2])
     with socket.socket(socket.AF_INET6, socket.SOCK_DGRAM) as java:

@@ -36,11 +36,24 @@ def test_a_socket_is_found_with_its_user_and_inode(bound: socket.socket) -> None
     assert only_socket(bound) == UdpSocket(str(inode), str(os.getuid()), waiting=False)
 
 
+@pytest.mark.usefixtures("way")
+@pytest.mark.parametrize("address", ["::", "::1", "::ffff:127.0.0.1"])
+def test_a_socket_of_ipv6_is_found_with_its_datagrams(address: str) -> None:
+    with socket.socket(socket.AF_INET6, socket.SOCK_DGRAM) as bound:
+        bound.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 0)
+        bound.bind((address, 0))
+        inode, user = str(os.fstat(bound.fileno()).st_ino), str(os.getuid())
+        assert only_socket(bound) == UdpSocket(inode, user, waiting=False)
+        with socket.socket(socket.AF_INET6, socket.SOCK_DGRAM) as sender:
+            sender.sendto(b"work", bound.getsockname())
+        assert only_socket(bound) == UdpSocket(inode, user, waiting=True)
+
+
 def test_a_socket_that_one_reading_misses_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     row = "  9: 0100007F:1388 00000000:0000 07 00000000:00000000 00:00000000 00000000  1000 0 4711 2 0 0"
     readings = iter(["  sl  local_address", row])
     monkeypatch.setattr(udp_sockets, "_SOCK_DIAG", 99)
-    monkeypatch.setattr(udp_sockets, "_TABLE", SimpleNamespace(read_text=lambda: next(readings)))
+    monkeypatch.setattr(udp_sockets, "_TABLES", (SimpleNamespace(read_text=lambda: next(readings)),))
     assert sockets_on(5000) == [UdpSocket("4711", "1000", waiting=False)]
 
 
