@@ -38,7 +38,6 @@ _CLUTTER_1_M2 = 4e-3  # density of false sightings; a sighting that is less prob
 _LEAST = 1e-6  # probability that every model keeps
 _KICK_SPEED_SD, _KICK_SPEED_M_S = 0.06, 0.2  # error of a kick's speed: relative part, and part of slow kicks
 _KICK_DIRECTION_SD, _KICK_ASIDE_M_S = 0.03, 0.1  # error across the kick: direction in rad, and part of slow kicks
-_KICK_TIME_SD_S = 0.012  # the kick lies anywhere in the tick before its report: 40 ms divided by the root of 12
 _MISSES = 0.005  # probability that a reported kick did not reach the ball
 _SPIN_SD_M_S = 1.0  # deviation of the spin from that of a rolling ball, before the track is considered
 _HELD_SPIN_M_S = 0.4  # deviation of the spin of a ball in a mouth, which follows the robot with a delay
@@ -233,13 +232,20 @@ class BallFilter:
         self._set(state, covariance, spin_m_s, spin_m2_s2)
         self._become(Mode.HANDLED)
 
-    def kick(self, velocity_m_s: Floats, position_m: Floats | None = None, covariance_m2: Floats | None = None) -> None:
+    def kick(
+        self,
+        velocity_m_s: Floats,
+        position_m: Floats | None = None,
+        covariance_m2: Floats | None = None,
+        time_sd_s: float = 0.0,
+    ) -> None:
         """Takes a kick; a small probability is left that it did not reach the ball.
 
         Args:
             velocity_m_s: (2), of the ball after the kick, world frame.
             position_m: (2), of the ball at the kick; None: as in the track.
             covariance_m2: (2, 2) of that position.
+            time_sd_s: deviation of the time of the kick.
         """
         speed_m_s = float(np.hypot(*velocity_m_s))
         along = velocity_m_s / max(speed_m_s, 1e-9)
@@ -247,7 +253,7 @@ class BallFilter:
         if position_m is None or covariance_m2 is None:
             position_m, covariance_m2 = self.state[:2], self.covariance[:2, :2]
         covariance = np.zeros((4, 4))
-        covariance[:2, :2] = covariance_m2 + np.outer(along, along) * (speed_m_s * _KICK_TIME_SD_S) ** 2
+        covariance[:2, :2] = covariance_m2 + np.outer(along, along) * (speed_m_s * time_sd_s) ** 2
         covariance[2:, 2:] = (
             np.outer(along, along) * (_KICK_SPEED_SD * speed_m_s + _KICK_SPEED_M_S) ** 2
             + np.outer(across, across) * (_KICK_DIRECTION_SD * speed_m_s + _KICK_ASIDE_M_S) ** 2

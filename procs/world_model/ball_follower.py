@@ -83,9 +83,9 @@ class BallFollower:
         """
         passed_s, tracker = news.passed_s, self.tracker
         kicked = self.kicks.own(news.kicker, view, self._mouth_m, passed_s) if news.kicker else None
-        kicks = self.kicks.of_mates(news.told, news.now_us, self._mouth_m)
+        kicks = self.kicks.of_mates(news.told, news.now_us, self._mouth_m, news.iteration_s)
         for kick in [kicked, *kicks] if kicked else kicks:
-            tracker.kick(kick.velocity_m_s, kick.age_s - passed_s, kick.mouth, kick.lift_m_s)
+            tracker.kick(kick.velocity_m_s, kick.age_s - passed_s, kick.mouth, kick.lift_m_s, kick.time_sd_s)
         near = Robots.near(tracker.track, robots, self._mouth_m, self._config.robot.height_m) if tracker.known else None
         wall = float(tracker.known and self._walls.near(tracker.track, passed_s))
         tracker.advance(passed_s, self._config.ball_timeout_s, contact=wall, robots=near, walls=self._walls)

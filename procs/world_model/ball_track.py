@@ -232,16 +232,16 @@ class BallTrack:
         self.confirmed, self.doubts = {}, ()
         self._note_place()
 
-    def kick(self, velocity_m_s: Floats, lift_m_s: float, mouth: Seen) -> None:
+    def kick(self, velocity_m_s: Floats, lift_m_s: float, mouth: Seen, time_sd_s: float) -> None:
         """Takes a kick at the time of the track; see `BallTracker.kick`."""
         if len(mouth.positions_m):
             place = mouth.positions_m[0], mouth.covariances_m2[0]
             if self.filter is None:
                 self.filter = self._new(*place)
-            self.filter.kick(velocity_m_s, *place)
+            self.filter.kick(velocity_m_s, *place, time_sd_s)
             self._note_place()
         elif self.filter is not None:
-            self.filter.kick(velocity_m_s)
+            self.filter.kick(velocity_m_s, time_sd_s=time_sd_s)
         self.flight = Flight.of_kick(lift_m_s)
         self.confirmed = {}
         self.doubts = ()

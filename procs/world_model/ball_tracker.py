@@ -129,7 +129,14 @@ class BallTracker:
         """
         self._take(_HELD, age_s, lambda track: track.hold(robot, state, covariance))
 
-    def kick(self, velocity_m_s: Floats, age_s: float = 0.0, mouth: Seen = Seen.NOTHING, lift_m_s: float = 0.0) -> None:
+    def kick(
+        self,
+        velocity_m_s: Floats,
+        age_s: float = 0.0,
+        mouth: Seen = Seen.NOTHING,
+        lift_m_s: float = 0.0,
+        time_sd_s: float = 0.0,
+    ) -> None:
         """Takes a kick that gave the ball a velocity; call it before `advance`.
 
         Args:
@@ -137,8 +144,9 @@ class BallTracker:
             age_s: time since the kick; a negative one lies after the last tick, within the step of the next `advance`.
             mouth: place of the ball at the kick (0 or 1), such as the mouth of a mate; 0: that of the track.
             lift_m_s: velocity upwards.
+            time_sd_s: deviation of the age.
         """
-        self._take(_KICKED, age_s, lambda track: track.kick(velocity_m_s, lift_m_s, mouth))
+        self._take(_KICKED, age_s, lambda track: track.kick(velocity_m_s, lift_m_s, mouth, time_sd_s))
 
     def put_down(self, spot_m: Floats) -> None:
         """Takes a ball that the crew has just put on or beside a spot (2), world frame; earlier inputs do not count.

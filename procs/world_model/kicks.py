@@ -18,6 +18,7 @@ from procs.world_model.told import mouth_of
 
 _MESSAGES = 2  # number of messages that tell mates of a kick, because the radio may lose one
 _OLDEST_S = 0.5  # older kicks of mates are not used
+_TIME_SHARE = 0.3  # of a tick: deviation of a kick's time, which lies somewhere in it; the root of 1/12 is 0.29
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,8 @@ class Kick:
     """Velocity upwards that the ball got."""
     age_s: float
     """Time since the kick."""
+    time_sd_s: float
+    """Deviation of that time."""
     mouth: Seen = Seen.NOTHING
     """Place of the ball at the kick (0 or 1), if a mate kicked it."""
 
@@ -66,12 +69,20 @@ class Kicks:
         ):
             return None
         self._messages = _MESSAGES
-        return Kick(view.kicked_m_s(kicker.kick_speed_m_s, mouth_m), _lift_m_s(kicker), passed_s / 2)
+        return Kick(
+            view.kicked_m_s(kicker.kick_speed_m_s, mouth_m), _lift_m_s(kicker), passed_s / 2, _TIME_SHARE * passed_s
+        )
 
-    def of_mates(self, told: Iterable[tuple[team_message_t, Mate]], now_us: int, mouth_m: float) -> list[Kick]:
+    def of_mates(
+        self, told: Iterable[tuple[team_message_t, Mate]], now_us: int, mouth_m: float, tick_s: float
+    ) -> list[Kick]:
         """Returns the new kicks in messages of mates that know their places.
 
-        `mouth_m` is the distance from a robot's middle to that of a held ball.
+        Args:
+            told: messages with their senders.
+            now_us: logical time.
+            mouth_m: distance from a robot's middle to that of a held ball.
+            tick_s: time from tick to tick of the mates.
         """
         found = []
         for message, mate in told:
@@ -82,7 +93,7 @@ class Kicks:
             if message.kicks > known and mate.localized and sound and 0.0 <= age_s <= _OLDEST_S:
                 mouth = mouth_of(mate, mouth_m, message.kick_us / US_PER_S)
                 velocity_m_s = np.array((message.kick_vx_m_s, message.kick_vy_m_s))
-                found.append(Kick(velocity_m_s, message.kick_vz_m_s, age_s, mouth))
+                found.append(Kick(velocity_m_s, message.kick_vz_m_s, age_s, _TIME_SHARE * tick_s, mouth))
         return found
 
 

@@ -4,15 +4,17 @@ import numpy as np
 import pytest
 
 from lcmtypes.robot import kicker_state_t, odometry_t
-from lcmtypes.soccer import ball_percept_t, game_state_t, pose_t
+from lcmtypes.soccer import ball_percept_t, game_state_t, pose_t, team_message_t
 from procs.model.frames import Floats
 from procs.model.game_states import State
 from procs.world_model.ball_follower import BallFollower, BallNews
 from procs.world_model.own_view import OwnView
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.settings import WorldModelConfig
+from procs.world_model.told import mate_of
 
 TICK_US = 40_000
+KICK_M_S = 6.0
 CERTAIN = np.eye(3) * 1e-4
 
 
@@ -27,9 +29,13 @@ def news(
     kicker: kicker_state_t | None = None,
     game: game_state_t | None = None,
     percept: ball_percept_t | None = None,
+    told: team_message_t | None = None,
+    tick_us: int = TICK_US,
 ) -> BallNews:
     holds = kicker is not None and bool(kicker.ball_held)
-    return BallNews(tick * TICK_US, 0.04, 0.04, holds, kicker, game, percept, [])
+    mate = mate_of(told, tick * tick_us / 1e6) if told else None
+    heard = [(told, mate)] if told and mate else []
+    return BallNews(tick * tick_us, tick_us / 1e6, tick_us / 1e6, holds, kicker, game, percept, heard)
 
 
 def place_m(follower: BallFollower) -> Floats:
@@ -57,6 +63,20 @@ def test_kick_is_returned_once(follower: BallFollower) -> None:
     assert kick.velocity_m_s == pytest.approx((6.0, 0.0), abs=0.01)
     assert follower.follow(news(3, kicker=kicked), view(), []) is None
     assert follower.tracker.track.state[2] > 4.0
+
+
+@pytest.mark.parametrize("by_mate", [False, True])
+@pytest.mark.parametrize("tick_us", [10_000, 40_000, 100_000])
+def test_place_of_a_kicked_ball_is_as_open_as_the_tick(follower: BallFollower, tick_us: int, by_mate: bool) -> None:
+    """The kick lies somewhere in a tick: its deviation is the tick by the root of 12."""
+    mate = team_message_t(robot="cyan2", localized=True, x_m=1.0, pose_covariance=CERTAIN.tolist())
+    kicker = kicker_state_t(ball_held=not by_mate)
+    follower.follow(news(1, kicker=kicker, told=mate, tick_us=tick_us), view(), [])
+    mate.kicks, mate.kick_us, mate.kick_vx_m_s = int(by_mate), 2 * tick_us - tick_us // 2, KICK_M_S
+    kicker = kicker_state_t(kicks=int(not by_mate), kick_speed_m_s=KICK_M_S)
+    follower.follow(news(2, kicker=kicker, told=mate, tick_us=tick_us), view(), [])
+    along_m, across_m = np.sqrt(np.diag(follower.tracker.track.covariance)[:2])
+    assert along_m**2 - across_m**2 == pytest.approx((KICK_M_S * tick_us / 1e6) ** 2 / 12, rel=0.4)
 
 
 def test_ball_that_the_crew_puts_down_is_known(follower: BallFollower) -> None:
