@@ -49,11 +49,21 @@ class StereoObsConfig(Config):
     @field_validator("farthest_m")
     @classmethod
     def _not_nearer(cls, farthest_m: float, info: ValidationInfo) -> float:
-        """Refuses a distance up to which the pair, checked before, measures nothing."""
+        """Refuses a distance up to which the pair, checked before, measures nothing or sees no robot."""
         if "rig" in info.data:
-            nearest_m = StereoFinder(info.data["rig"].reduced(LONGEST_PX)).nearest_m
+            rig: StereoRig = info.data["rig"]
+            nearest_m = StereoFinder(rig.reduced(LONGEST_PX)).nearest_m
             if nearest_m >= farthest_m:
                 raise ValueError(f"the pair measures from {nearest_m:.3f} m on; farthest_m should be greater")
+            if {"robot", "ball"} <= info.data.keys():
+                robot: RobotModel = info.data["robot"]
+                lowest_m, highest_m = _heights_m(robot, info.data["ball"])
+                shown_m = rig.shows_from_m((lowest_m + min(highest_m, robot.height_m)) / 2) + robot.radius_m
+                if shown_m >= farthest_m:
+                    raise ValueError(
+                        f"the pair, {rig.height_m:g} m high, shows robots from {shown_m:.3f} m on; "
+                        "farthest_m should be greater, or the height nearer to that of robots"
+                    )
         return farthest_m
 
 
@@ -85,15 +95,21 @@ class StereoObs(Component):
 
     def config_changed(self) -> None:
         config = self.config
-        lowest_m = _lowest_m(config.robot, config.ball)
+        lowest_m, highest_m = _heights_m(config.robot, config.ball)
         self._finder = StereoFinder(
             config.rig.reduced(LONGEST_PX),
             lowest_m=lowest_m,
-            highest_m=max(StereoFinder.highest_m, lowest_m + _LEAST_BAND_M),
+            highest_m=highest_m,
             farthest_m=config.farthest_m,
             radius_m=config.robot.radius_m,
             deviation_px=config.deviation_px,
         )
+
+
+def _heights_m(robot: RobotModel, ball: BallModel) -> tuple[float, float]:
+    """Returns the lower and the upper edge of the heights that are looked at."""
+    lowest_m = _lowest_m(robot, ball)
+    return lowest_m, max(StereoFinder.highest_m, lowest_m + _LEAST_BAND_M)
 
 
 def _lowest_m(robot: RobotModel, ball: BallModel) -> float:

@@ -54,6 +54,10 @@ class StereoRig(Config):
         """(height_px): downward part of each row's direction, for one metre ahead."""
         return np.asarray((np.arange(self.height_px, dtype=np.float64) - (self.height_px - 1) / 2) / self.focal_px)
 
+    def shows_from_m(self, height_m: float) -> float:
+        """Returns the distance ahead from which on the pictures show what is that high above the ground."""
+        return abs(self.height_m - height_m) / float(self.rows[-1])
+
     def reduced(self, focal_px: float) -> "StereoRig":
         """Returns the calibration of the same view in smaller frames, with this focal length or the next larger one.
 

@@ -213,6 +213,19 @@ def test_pair_that_cannot_be_is_refused(setting: str, mistake: str) -> None:
             "shared.ball.radius_m=0.29",
             "above a ball of 0.58 m, heights from 0.61 m on count; robots of 0.6 m should be higher",
         ),
+        (
+            "shared.rig.height_m=2",
+            "the default of 'farthest_m' does not fit: the pair, 2 m high, shows robots from 4.984 m on; "
+            "farthest_m should be greater, or the height nearer to that of robots",
+        ),
+        (
+            "shared.rig.height_m=1.8 */stereo_obs.farthest_m=4.3",
+            "'farthest_m' is 4.3; the pair, 1.8 m high, shows robots from 4.381 m on",
+        ),
+        (
+            "shared.rig.height_m=0.8 shared.rig.focal_px=1900",
+            "the pair, 0.8 m high, shows robots from 7.315 m on",
+        ),
     ],
 )
 def test_settings_with_which_no_robot_is_seen_are_refused(settings: str, mistake: str) -> None:
@@ -227,6 +240,7 @@ def test_settings_with_which_no_robot_is_seen_are_refused(settings: str, mistake
         ({"farthest_m": 0.8}, 1.1),
         ({"rig": {"focal_px": 2000.0}}, 4.0),
         ({"rig": {"focal_px": 900.0, "baseline_m": 0.6}}, 4.0),
+        ({"rig": {"height_m": 1.8}}, 4.4),
         ({"robot": {"height_m": 0.28}}, 2.4),
         ({"ball": {"radius_m": 0.29}, "robot": {"height_m": 0.65}}, 2.4),
     ],
