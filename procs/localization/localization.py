@@ -23,7 +23,7 @@ from procs.model.realism import Realism
 from procs.vision.calibration import MirrorConfig
 
 _FASTEST_M_S = 8.0  # no robot drives faster
-_SHORT_S = 0.1  # up to this age of an exposure, the velocity of the last tick describes the motion well enough
+_SHORT_S = 0.05  # up to this age of an exposure, the velocity of the last tick describes the motion well enough
 _AHEAD_S = 0.02  # clocks of cameras may be ahead by this much
 _USUAL = MirrorConfig().mirror()  # the mirror for which the expected errors are stated
 _AWAY_M = 2.0  # distance at which mirrors are compared

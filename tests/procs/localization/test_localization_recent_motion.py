@@ -1,6 +1,8 @@
 """Points of old exposures: the way since then, and what becomes of points whose way is not known."""
 
+import itertools
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,8 +11,9 @@ from fwk.testing import Bench
 from procs.localization.localization import Localization
 from procs.localization.recent_motion import MEMORY_US, RecentMotion
 from procs.localization.self_localizer import Motion
+from procs.model.geometry import wrap_rad
 from procs.model.units import US_PER_S
-from tests.procs.localization.localization_parts import FakeRobot, frames, until_localized, wander
+from tests.procs.localization.localization_parts import PERIOD_S, FakeRobot, frames, until_localized, wander
 
 TICK_US = 40_000
 
@@ -63,6 +66,24 @@ def localized(seed: int) -> tuple[Bench, FakeRobot]:
     assert until_localized(bench, robot, 5.0) < math.inf
     frames(bench, robot, 20)
     return bench, robot
+
+
+def test_points_count_where_a_robot_that_swings_was_then() -> None:
+    """Two ticks after the exposure the turn of the last tick alone tells a wrong way."""
+    bench, robot = localized(11)
+    exposed: list[dict[str, Any]] = []
+    errors_rad, rates_rad_s = [], [4.0 * math.sin(tick / 2) for tick in range(101)]
+    for tick, (before_rad_s, rate_rad_s) in enumerate(itertools.pairwise(rates_rad_s)):
+        robot.drive(np.array((0.0, 0.0, (before_rad_s + rate_rad_s) / 2)))
+        robot.show(bench)
+        bench.port("imu").put(heading_rad=wrap_rad(robot.pose[2]), yaw_rate_rad_s=rate_rad_s)
+        x_m, y_m = robot.white_points()
+        now_us = round(bench.time_us + PERIOD_S * US_PER_S)
+        exposed.append({"x_m": x_m.tolist(), "y_m": y_m.tolist(), "capture_us": now_us})
+        bench.port("line_points").put(**exposed[max(0, tick - 2)])
+        bench.iterate()
+        errors_rad.append(robot.error(bench)[2])
+    assert np.std(errors_rad[10:]) < 0.02
 
 
 def test_points_of_an_exposure_long_ago_are_not_believed() -> None:
