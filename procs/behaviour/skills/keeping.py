@@ -110,9 +110,13 @@ class KeepGoal(KeepLine):
         return scene
 
     def _goes_wide(self, scene: Scene) -> bool:
+        """Whether the ball crosses the goal line soon, beside the goal; also a slow ball may roll into it."""
         ball = scene.view.ball
         ahead_m = ball.place.x_m + scene.field.half_length_m
-        return 0.0 < ahead_m < -ball.velocity_m_s.x_m * _WIDE_S
+        if not 0.0 < ahead_m < -ball.velocity_m_s.x_m * _WIDE_S:
+            return False
+        y_m = ball.place.y_m - ball.velocity_m_s.y_m * ahead_m / ball.velocity_m_s.x_m
+        return abs(y_m) >= scene.field.goal_width_m / 2 + scene.view.bodies.ball_radius_m
 
     def _let_it_go(self, scene: Scene) -> Step:
         return self._stand(scene, scene.view.own.place)

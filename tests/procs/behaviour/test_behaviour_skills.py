@@ -253,6 +253,8 @@ def test_keeper_goes_where_the_shot_will_cross_its_line(vy_m_s: float, crossing_
         (ball(-6.0, 0.5, -6.5, -1.56), "dive"),
         (ball(-9.0, 0.5, -9.0, 0.9), "block"),
         (ball(-5.0, 0.5, -4.0, -4.0), "let it go"),
+        (ball(-10.0, 1.6, -0.7, 0.1), "let it go"),
+        (ball(-10.0, 0.5, -0.7, 0.0), "come out"),
         (ball(-5.0, 0.5, 1.0, 0.0), "come out"),
         (Ball(known=False), "wait in the middle"),
     ],
