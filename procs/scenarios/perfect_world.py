@@ -17,6 +17,7 @@ from lcmtypes.soccer import (
 )
 from procs.model.robot import ABSENT, team_in
 
+_RESTART_S = 2.0  # an agent that is silent for longer does not play
 _ROUNDING_M2 = 1e-8
 """A covariance without noise is that of rounding."""
 
@@ -66,12 +67,15 @@ class PerfectWorldModel(Component):
         ball.covariance = np.diag([place_m2, place_m2, velocity_m2_s2, velocity_m2_s2]).tolist()
         model.ball = ball
         others = [each for each in truth.robots if each.name != robot]
-        said = {name: role.value for name, role in self.role.items()}
+        said = {name: role.value for name, role in self.role.items() if self._plays(role)}
         silent = role_t(role=ABSENT)
         model.mates = [_mate(each, said.get(each.name, silent)) for each in others if team_in(each) == team_in(own)]
         model.opponents = [_opponent(each) for each in others if team_in(each) != team_in(own)]
         self.world_model.value = model
         self.world_model.write()
+
+    def _plays(self, role: Reads[role_t]) -> bool:
+        return self.clock.since_s(role.header.time_us) <= _RESTART_S
 
 
 def _mate(robot: true_robot_t, said: role_t) -> mate_estimate_t:

@@ -1,9 +1,11 @@
 """The world model that knows the truth."""
 
 from fwk.testing import Bench
-from lcmtypes.soccer import true_robot_t
+from lcmtypes.soccer import pass_agreement_t, true_robot_t
 from procs.model.robot import ABSENT
 from procs.scenarios.perfect_world import PerfectWorldModel
+
+PERIOD_S = 0.05
 
 
 def test_mates_have_the_roles_that_they_announce() -> None:
@@ -20,3 +22,14 @@ def test_mates_have_the_roles_that_they_announce() -> None:
         ("cyan3", 3.0, "passer"),
     ]
     assert [(each.x_m, each.vy_m_s) for each in model.opponents] == [(1.0, 0.5)]
+
+
+def test_mate_whose_agent_is_silent_does_not_play() -> None:
+    bench = Bench(PerfectWorldModel, "cyan1/world_model", namespaces=("cyan2",))
+    bench.port("ground_truth").put(robots=[true_robot_t(name=name, team="cyan") for name in ("cyan1", "cyan2")])
+    agreement = pass_agreement_t(receiver="cyan1")
+    bench.port("role", "cyan2").put(role="attacker", agreement=agreement)
+    for silent_s, role, receiver in ((1.9, "attacker", "cyan1"), (0.3, ABSENT, "")):
+        bench.iterate(round(silent_s / PERIOD_S))
+        (mate,) = bench.port("world_model").sent[-1].mates
+        assert (mate.role, mate.agreement.receiver) == (role, receiver)
