@@ -150,8 +150,12 @@ def layoff_place(game: Game, field: Field) -> Point:
 
 
 def first_opponent_place(game: Game, field: Field) -> Point:
-    """Returns the place of the nearest robot at the other team's set piece: between the ball and the own goal."""
-    return allowed(ahead(game.spot, bearing_rad(game.spot, field.goal_centre(-1.0)), _keep_off_m(game)), game, field)
+    """Returns the place of the nearest robot at the other team's set piece: between the ball and the own goal.
+
+    Where the goal is nearer to the ball than the rules let a robot come, it is beside that way.
+    """
+    place = allowed(ahead(game.spot, bearing_rad(game.spot, field.goal_centre(-1.0)), _keep_off_m(game)), game, field)
+    return place if field.in_field(*place) else _around(place, game, field)
 
 
 def helper_place(place: Point, game: Game, field: Field, taken: Sequence[Point] = ()) -> Point:

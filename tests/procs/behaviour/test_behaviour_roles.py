@@ -172,6 +172,17 @@ def test_positions_at_set_pieces_keep_the_distance(state: State, whose: Whose, s
         assert state is not State.KICK_OFF or place.x_m <= -0.25
 
 
+@pytest.mark.parametrize("y_m", [-1.5, 0.0, 0.75])
+def test_free_kick_near_a_small_goal_is_met_beside_the_way(y_m: float) -> None:
+    areas = {"penalty_area_width_m": 4.0, "penalty_area_depth_m": 1.5, "goal_area_width_m": 3.0}
+    field = Field(length_m=9.0, width_m=6.0, restart_offset_m=1.0, penalty_mark_distance_m=1.8, **areas)
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.THEIRS, spot=Point(-2.7, y_m))
+    place = formation.first_opponent_place(game, field)
+    assert math.dist(place, game.spot) >= 3.0
+    assert field.in_field(*place)
+    assert not field.in_penalty_area(*place, -1.0)
+
+
 @pytest.mark.parametrize("own", [Point(-2.0, 5.0), Point(-1.0, 1.0), Point(2.0, 0.0)])
 def test_path_to_a_position_leads_around_a_set_pieces_ball(own: Point) -> None:
     game = Game(State.FREE_KICK, stopped=True, whose=Whose.THEIRS, spot=Point(0.0, 0.0))
