@@ -23,6 +23,8 @@ from procs.model.teams import Team, team_number_of_player
 
 _EXPIRES_S = 1.0
 """Logical time within which the skiller has to begin a command."""
+_TOLD_S = 0.5
+"""A kicker that is silent for longer does not tell that the ball is held."""
 
 
 class AgentConfig(Config):
@@ -98,7 +100,8 @@ class Agent(Component):
 
     def _decide(self, view: View, game: Game) -> tuple[str, Order]:
         """Returns the role of the robot and its order."""
-        held, field = self.kicker_state.value.ball_held, self.config.field
+        kicker, field = self.kicker_state, self.config.field
+        held = kicker.value.ball_held and self.clock.since_s(kicker.header.time_us) <= _TOLD_S
         if self._robot in game.sent_off and view.localized:
             return ABSENT, leave_field(view, field)
         if self.config.strategy == "greedy":

@@ -24,6 +24,7 @@ from procs.model.field import Field
 from procs.referee.referee import Referee
 from tests.procs.behaviour.behaviour_parts import newest
 
+PERIOD_S = 0.05
 MOUTH_M = 0.33
 """Distance of a ball in the mouth."""
 
@@ -49,6 +50,15 @@ def test_both_teams_decide_alike(robot: str, sign: float) -> None:
     assert command.skill == "shoot"
     assert command.x_m == sign * 11.0
     assert newest(bench, "role").role == "attacker"
+
+
+def test_ball_of_a_silent_kicker_is_not_held() -> None:
+    bench = Bench(Agent, "cyan2/agent")
+    bench.port("kicker_state").put(ball_held=True)
+    for silent_s, skill in ((0.4, "shoot"), (0.3, "get_ball")):
+        put_situation(bench, x_m=2.0, y_m=1.0, ball=seen_ball(6.0, 0.5))
+        bench.iterate(round(silent_s / PERIOD_S))
+        assert newest(bench, "skill").skill == skill
 
 
 def test_agent_plays_on_a_field_that_was_changed() -> None:
@@ -296,6 +306,14 @@ def test_senseless_numbers_do_no_harm(component: type[Component], value: float) 
             command = newest(bench, "motor_command")
             assert math.hypot(command.vx_m_s, command.vy_m_s) <= 3.1
             assert abs(command.omega_rad_s) <= 5.1
+
+
+def test_skill_loses_the_ball_of_a_silent_kicker(skiller: Bench) -> None:
+    skiller.port("kicker_state").put(ball_held=True, charged=True)
+    skiller.port("world_model").put(localized=True, ball=seen_ball(MOUTH_M, 0.0))
+    skiller.skill.put(skill="dribble", x_m=5.0)
+    skiller.iterate(round(1.0 / PERIOD_S))
+    assert skiller.skill.sent[-1].answer.reason == "lost the ball"
 
 
 def test_stopped_skiller_leaves_no_target_kick_or_handling() -> None:
