@@ -24,12 +24,12 @@ TICKS_BETWEEN = 16
 
 
 def victims(steered: Steered, luck: random.Random) -> Iterator[int]:
-    """Yields processes of components in a random order, each component once before any twice.
+    """Yields processes of running components in a random order, each component once before any twice.
 
     Some ticks pass before each: in lockstep no tick begins until a killed component is back.
     """
     while True:
-        names = [each["name"] for each in steered.ask("status")["components"]]
+        names = [each["name"] for each in steered.ask("status")["components"] if each["pid"]]
         for name in luck.sample(names, len(names)):
             steered.ticks_pass(TICKS_BETWEEN)
             yield steered.component(name)["pid"]

@@ -154,11 +154,16 @@ def _server(number: int) -> socket.socket:
         env={**_ENVIRONMENT, MARK: " " * MARK_CHARACTERS},
         stdin=subprocess.DEVNULL,
         pass_fds=[theirs.fileno()],
-        preexec_fn=partial(die_with_parent, os.getpid(), signal.SIGTERM),
+        preexec_fn=partial(_begin_server, os.getpid()),
     )
     theirs.close()
     atexit.register(_end, server, ours)
     return ours
+
+
+def _begin_server(parent: int) -> None:
+    die_with_parent(parent, signal.SIGTERM)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # commands hear it also if the test run ignores it, as under nohup
 
 
 def _end(server: "subprocess.Popen[bytes]", connection: socket.socket) -> None:
