@@ -102,9 +102,9 @@ CASES = {
         "fouls.test_ball_won_in_the_own_half_must_be_passed"
     ],
     "advantage": [
-        "fouls.test_foul_waits_while_its_victims_have_the_ball",
-        "fouls.test_advantage_is_over_after_three_seconds",
-        "fouls.test_contact_stops_the_game_while_a_foul_is_held_back",
+        "advantage.test_foul_waits_while_its_victims_have_the_ball",
+        "advantage.test_advantage_is_over_after_three_seconds",
+        "advantage.test_contact_stops_the_game_while_a_foul_is_held_back",
     ],
     "start with two robots at least": [
         "cases.test_match_waits_for_two_robots_of_each_team",
