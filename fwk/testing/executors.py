@@ -126,7 +126,7 @@ class _Workers(Executor):
         return outcome
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:  # noqa: ARG002 - of any executor
-        """Cancels the calls that have no result: the cluster would play them for nobody."""
+        """Cancels the calls that have no result, which the cluster would play although no caller waits for them."""
         self._ended.set()
         self._workers.shutdown(wait=False)
 

@@ -32,7 +32,7 @@ _KICK_TIMEOUT_S = 0.15
 _SEEN_S = 0.5
 """Older percepts do not count, and neither does a ball that the kicker held."""
 _TOLD_MAX = 100
-"""Number of unknown skills that are told in the log; whoever makes names up does not fill it."""
+"""Number of unknown skills that are told in the log; made-up names do not fill it."""
 
 
 class SkillerConfig(Config):

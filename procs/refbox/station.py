@@ -20,7 +20,7 @@ class Station:
         self.refused = 0
         """Number of its messages that were no world states."""
         self.silent = False
-        """It has ended its side of the connection: it reports no more, and may have left."""
+        """The base station has ended its side of the connection: it reports no more, and may have left."""
         self._connection = connection
         self._log = log
         self._inbox = Inbox(connection)

@@ -16,8 +16,8 @@ from lcmtypes.soccer import (
     world_model_t,
 )
 from procs.model.robot import ABSENT, team_in
+from procs.world_model.settings import RESTART_S
 
-_RESTART_S = 2.0  # an agent that is silent for longer does not play
 _ROUNDING_M2 = 1e-8
 """A covariance without noise is that of rounding."""
 
@@ -75,7 +75,7 @@ class PerfectWorldModel(Component):
         self.world_model.write()
 
     def _plays(self, role: Reads[role_t]) -> bool:
-        return self.clock.since_s(role.header.time_us) <= _RESTART_S
+        return self.clock.since_s(role.header.time_us) <= RESTART_S
 
 
 def _mate(robot: true_robot_t, said: role_t) -> mate_estimate_t:

@@ -120,10 +120,17 @@ class Camera(Component):
         roll_deg, pitch_deg = (errors.tilt_sd_deg * self._tilts).tolist()
         mirror = config.mirror.mirror(config.roll_deg + roll_deg, config.pitch_deg + pitch_deg)
         self._renderer = Renderer(mirror, config.field, Bodies.of(config.robot, config.ball), _wear(errors))
+        blue, green, red = (1.0 + errors.cast * self._casts).tolist()
         self._noise = SensorNoise(
-            config.mirror.size_px, errors.noise_levels, config.brightness, errors.flicker, self._noise_seed
+            config.mirror.size_px,
+            errors.noise_levels,
+            config.brightness,
+            errors.flicker,
+            self._noise_seed,
+            blur_px=errors.blur_px,
+            vignette=errors.vignette,
+            cast=(blue, green, red),
         )
-        self._noise.spoil_lens(errors.blur_px, errors.vignette, 1.0 + errors.cast * self._casts)
 
     def _scene(self, seen: Exposure) -> Scene:
         # A robot that is not a player has no marker: a black one on a black body.

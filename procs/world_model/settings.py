@@ -11,6 +11,8 @@ from procs.world_model.opponents import OpponentSettings
 
 STALE_S = 0.5
 """Older sightings, and older statements of the own kicker and skiller, do not count."""
+RESTART_S = 2.0
+"""A robot whose agent is silent for longer does not play."""
 
 
 def counts(age_s: float) -> bool:

@@ -34,13 +34,12 @@ from procs.world_model.own_view import OwnView
 from procs.world_model.possession import holder_of
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
-from procs.world_model.settings import STALE_S, WorldModelConfig, counts
+from procs.world_model.settings import RESTART_S, STALE_S, WorldModelConfig, counts
 from procs.world_model.team import Mate, PlaceRow, Places, Team
 from procs.world_model.told import mate_of, obstacles_of
 from procs.world_model.world_messages import fill_ball, fill_kick, fill_plan, fill_team_message, fill_world_model
 
 _BEHIND_WALL_M = 1.0  # a mate that believes it is further outside the walls is lost
-_RESTART_S = 2.0  # a robot whose agent is silent for longer does not play
 
 
 class WorldModel(Component):
@@ -224,7 +223,7 @@ class WorldModel(Component):
         player = player_of(self._robot, self.config.players)
         message = self.team_message.value
         message.robot, message.number = self._robot, player.number if player else 0
-        plays = self.clock.since_s(self._role_us) <= _RESTART_S
+        plays = self.clock.since_s(self._role_us) <= RESTART_S
         role = self.role.value if plays else role_t(role=ABSENT)
         message.role, message.intention, message.agreement = role.role, role.intention, role.agreement
         message.ball_held = self._holds

@@ -3,7 +3,6 @@
 import cv2
 import numpy as np
 
-from procs.model.frames import Floats
 from procs.vision.colours import Picture
 
 _SPARE_PX = 64  # the noise field is larger than a picture by this, and each frame uses another part of it
@@ -12,26 +11,41 @@ _SPARE_PX = 64  # the noise field is larger than a picture by this, and each fra
 class SensorNoise:
     """Adds noise drawn beforehand: fresh random numbers for every pixel would cost more than the whole picture."""
 
-    def __init__(self, size_px: int, levels: float, brightness: float, flicker: float, seed: int) -> None:
-        """`levels`: standard deviation of 255; `brightness`: mean factor; `flicker`: its deviation, as a part of it."""
+    def __init__(
+        self,
+        size_px: int,
+        levels: float,
+        brightness: float,
+        flicker: float,
+        seed: int,
+        *,
+        blur_px: float = 0.0,
+        vignette: float = 0.0,
+        cast: tuple[float, float, float] = (1.0, 1.0, 1.0),
+    ) -> None:
+        """Draws the noise, and computes the flaws of the lens.
+
+        Args:
+            size_px: width and height of the pictures.
+            levels: standard deviation of the noise, of 255.
+            brightness: mean factor on all colours.
+            flicker: standard deviation of the brightness, as a part of it.
+            seed: of the noise.
+            blur_px: standard deviation of the blur.
+            vignette: part of the brightness that is missing at the picture's edge.
+            cast: factors on blue, green and red.
+        """
         drawn = np.random.default_rng(seed).standard_normal((size_px + _SPARE_PX, size_px + _SPARE_PX, 3))
         drawn = np.round(drawn * levels)
         self._lighter = drawn.clip(0, 255).astype(np.uint8)
         self._darker = (-drawn).clip(0, 255).astype(np.uint8)
         self._noisy = levels > 0
-        self._size_px = size_px
-        self.spoil_lens(0.0, 0.0, np.ones(3))
         self._brightness = brightness
         self._flicker = flicker
-
-    def spoil_lens(self, blur_px: float, vignette: float, cast: Floats) -> None:
-        """Sets the blur, the part of the brightness that is missing at the picture's edge, and factors on blue, green
-        and red.
-        """
         self._blur_px = blur_px
-        from_centre = np.linspace(-1.0, 1.0, self._size_px)
+        from_centre = np.linspace(-1.0, 1.0, size_px)
         square = np.minimum(from_centre[:, None] ** 2 + from_centre**2, 1.0)
-        factors = (1.0 - vignette * square)[..., None] * cast.clip(0.0)
+        factors = (1.0 - vignette * square)[..., None] * np.maximum(cast, 0.0)
         self._most = float(factors.max())
         self._shade = np.round(255 * factors / max(self._most, 1e-9)).astype(np.uint8)
         self._even = bool((factors == 1.0).all())
