@@ -100,4 +100,4 @@ class Carrier:
         if touching:
             self._place = sight.ball
         if alone != self.robot and (touching or free):
-            self.robot, self.since = alone, sight.ball
+            self.robot, self.since = alone, touching.get(alone, sight.ball)

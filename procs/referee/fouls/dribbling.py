@@ -7,8 +7,12 @@ from procs.referee.reasons import Reason
 
 
 def dribbling(scene: Scene) -> Foul | None:
-    """Returns the foul of a robot that has carried the ball too far from where it took it."""
-    carrier, ball = scene.carrier, scene.sight.ball
-    if not carrier.robot or math.dist(carrier.since, ball) <= scene.rules.dribbling_m:
+    """Returns the foul of a robot that touches the ball too far from where it took it.
+
+    A ball that rolls on by itself is set free.
+    """
+    robot = scene.carrier.robot
+    place = scene.sight.touching.get(robot) if robot else None
+    if place is None or math.dist(scene.carrier.since, place) <= scene.rules.dribbling_m:
         return None
-    return Foul(carrier.robot, Reason.DRIBBLING, ball)
+    return Foul(robot, Reason.DRIBBLING, place)

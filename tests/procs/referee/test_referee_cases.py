@@ -91,6 +91,7 @@ CASES = {
     "dribbling for 3 m": [
         "fouls.test_dribbling_further_than_three_metres_is_a_foul",
         "fouls.test_taker_of_a_set_piece_may_not_dribble_further_either",
+        "limits.test_dribble_ends_where_the_ball_is_set_free",
     ],
     "pushing, collisions": [
         "fouls.test_pushing_a_rival_away_is_a_foul",
