@@ -30,18 +30,18 @@ class Pushing:
         self._pushed_m: dict[tuple[str, str], float] = {}
 
     def watch(self, scene: Scene) -> Foul | None:
-        """Returns the foul of a robot that pushed a rival too far."""
-        robots, pushed_m = scene.sight.robots, {}
+        """Returns the foul of a robot that pushed a rival too far, unless a rival drove it there."""
+        robots, shoves = scene.sight.robots, {}
         contact_m = 2 * scene.rules.robot.radius_m + _TOUCHING_M
         for pusher, pushed in itertools.permutations(sorted(robots), 2):
             if team_number(pusher) is team_number(pushed) or math.dist(robots[pusher], robots[pushed]) > contact_m:
                 continue
             both_m_s = min(self._towards_m_s(scene, pusher, pushed, of) for of in (pusher, pushed))
-            before_m = self._pushed_m.get((pusher, pushed), 0.0)
-            shoves = both_m_s > _SHOVES_M_S
-            pushed_m[pusher, pushed] = before_m + both_m_s * scene.duration_s if shoves else 0.0
-        self._pushed_m = pushed_m
-        for (pusher, _), way_m in pushed_m.items():
+            if both_m_s > _SHOVES_M_S:
+                shoves[pusher, pushed] = self._pushed_m.get((pusher, pushed), 0.0) + both_m_s * scene.duration_s
+        driven = {pushed for _, pushed in shoves}
+        self._pushed_m = {pair: way_m for pair, way_m in shoves.items() if pair[0] not in driven}
+        for (pusher, _), way_m in self._pushed_m.items():
             if way_m > scene.rules.pushing_m:
                 self._pushed_m = {}
                 return Foul(pusher, Reason.PUSHING, robots[pusher], direct=True)

@@ -96,6 +96,7 @@ CASES = {
     "pushing, collisions": [
         "fouls.test_pushing_a_rival_away_is_a_foul",
         "fouls.test_collision_in_the_own_area_brings_a_penalty",
+        "limits.test_robot_that_a_rival_drives_pushes_no_other",
     ],
     "areas: one field player for 10 s, only the keeper in the goal area": ["fouls.test_areas"],
     "goal from the own half": ["fouls.test_goal_from_the_own_half_does_not_count"],

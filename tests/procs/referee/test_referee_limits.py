@@ -1,10 +1,10 @@
-"""Limits of the fouls: balls that are set free in time."""
+"""Limits of the fouls: balls set free in time, robots that are driven into others."""
 
 import pytest
 
 from procs.model.events import Event, Kind
 from procs.model.field import Point
-from tests.procs.referee.script import Script
+from tests.procs.referee.script import TICK_S, Script
 
 
 @pytest.mark.parametrize("after", ["rolls", "is touched again"])
@@ -21,3 +21,14 @@ def test_dribble_ends_where_the_ball_is_set_free(after: str) -> None:
     else:
         script.touch("cyan3")
     assert script.reasons == ([] if after == "rolls" else ["dribbling"])
+
+
+@pytest.mark.parametrize("first", ["cyan", "magenta"])
+def test_robot_that_a_rival_drives_pushes_no_other(first: str) -> None:
+    second = "magenta" if first == "cyan" else "cyan"
+    row = (f"{first}2", f"{second}2", f"{first}3")
+    script = Script().playing()
+    while not script.whistle.stopped:
+        script.robots |= {robot: Point(2.0 + 0.5 * place, 3.0) for place, robot in enumerate(row)}
+        script.tick(**dict.fromkeys(row, Point(10 * TICK_S, 0.0)))
+    assert [(call.robot, call.reason) for call in script.whistle.calls] == [(row[0], "pushing")]
