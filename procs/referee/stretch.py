@@ -65,17 +65,18 @@ class Stretch:
             self.piece, self.touches.late = State.PLAY, late
         self._resting_at, self._resting_s = ball, 0.0
 
-    def fouls(self, scene: Scene) -> tuple[Foul | None, Foul | None]:
-        """Returns the foul that was committed in the tick, and the foul that is punished now.
+    def fouls(self, scene: Scene) -> tuple[list[Foul], list[Foul]]:
+        """Returns the fouls that were committed in the tick, and those that are punished now.
 
-        Contact always stops the game, also while another foul is held back.
+        Contact always stops the game, also while another foul is held back; so do two teams at fault at once.
         """
-        foul, lost = self._book.watch(scene), self._advantage.lost(scene)
-        if foul is not None and foul.direct:
-            return foul, foul
-        if foul is None or self._advantage.pends(foul):
-            return None, lost
-        return foul, lost or (None if self._advantage.grants(foul, scene) else foul)
+        fouls, lost = self._book.watch(scene), self._advantage.lost(scene)
+        if len(fouls) > 1 or any(foul.direct for foul in fouls):
+            return fouls, fouls
+        held = [lost] if lost else []
+        if not fouls or self._advantage.pends(fouls[0]):
+            return [], held
+        return fouls, held or ([] if self._advantage.grants(fouls[0], scene) else fouls)
 
     def deadlocked(self, scene: Scene) -> bool:
         """Returns whether the ball has stayed in its place for too long."""

@@ -10,9 +10,8 @@ from procs.model.game_states import State
 from procs.model.teams import Team, team_number
 from procs.referee import goals, halves, restarts
 from procs.referee.calls import Call
-from procs.referee.fouls.dribbling import dribbling
+from procs.referee.fouls.book import grave_fouls
 from procs.referee.fouls.foul import Foul, Scene
-from procs.referee.fouls.pushing import collision
 from procs.referee.fouls.set_piece import breach
 from procs.referee.line_up import incomplete_team, keeper_is_away, misplaced_robots
 from procs.referee.match import Match
@@ -154,19 +153,20 @@ class Whistle(Match):
         ball = scene.sight.ball
         self._stretch.rolled(ball, self.rules)
         committed, punished = self._stretch.fouls(scene)
-        if committed:
-            self._count_foul(committed)
+        for foul in committed:
+            self._count_foul(foul)
         if punished:
-            self._give_free_kick(punished)
+            self._punish(punished, ball)
         elif self._stretch.deadlocked(scene):
             self.interrupt(restarts.dropped_ball(ball, self.rules.field), Reason.DEADLOCK)
 
     def _watch_set_piece(self, scene: Scene) -> None:
         ball, touched = scene.sight.ball, bool(scene.touches.robots)
-        grave = collision(scene) or dribbling(scene)
+        grave = grave_fouls(scene)
         if grave:
-            self._count_foul(grave)
-            self._give_free_kick(grave)
+            for foul in grave:
+                self._count_foul(foul)
+            self._punish(grave, ball)
         elif self._repeat(scene):
             return
         elif self._is_taken(scene):
@@ -191,10 +191,10 @@ class Whistle(Match):
             return
         reach_s = self.rules.shot_s if self.shootout else self.rules.penalty_s
         scored = penalty_scored(scene, self._stretch, self.restart, self.time_in_state_s, reach_s)
-        grave = collision(scene) or dribbling(scene)
-        if grave and team_number(grave.robot) is self.team:
-            self._count_foul(grave)
-            scored = False
+        for foul in grave_fouls(scene):
+            if team_number(foul.robot) is self.team:
+                self._count_foul(foul)
+                scored = False
         if scored is None:
             return
         if self.shootout:
@@ -216,10 +216,13 @@ class Whistle(Match):
         self._repeats = repeats
         return True
 
-    def _give_free_kick(self, foul: Foul) -> None:
-        """Interrupts the game for the free kick, or the penalty, that the foul brings."""
-        offender, field = team_number(foul.robot), self.rules.field
-        if foul.direct and field.in_penalty_area(*foul.place, self.ends.side_of(offender)):
+    def _punish(self, fouls: list[Foul], ball: Point) -> None:
+        """Interrupts the game for the free kick or the penalty that a foul brings; those of two teams drop the ball."""
+        foul, field = fouls[0], self.rules.field
+        offender = team_number(foul.robot)
+        if len(fouls) > 1:
+            self.interrupt(restarts.dropped_ball(ball, field), foul.reason)
+        elif foul.direct and field.in_penalty_area(*foul.place, self.ends.side_of(offender)):
             self.interrupt(restarts.penalty(offender.other, field, self.ends), foul.reason, foul.robot)
         else:
             self.interrupt(restarts.after_foul(foul.place, offender, field), foul.reason, foul.robot)

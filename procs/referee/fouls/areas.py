@@ -4,7 +4,7 @@ In the opponents' areas a goalkeeper is a field player. A robot that is alone ke
 """
 
 from procs.model.field import SIDES
-from procs.model.teams import team_number
+from procs.model.teams import Team, team_number
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.reasons import Reason
 
@@ -16,8 +16,8 @@ class Areas:
         self._inside_s: dict[str, float] = {}
         self._forbidden_s: dict[str, float] = {}
 
-    def watch(self, scene: Scene) -> Foul | None:
-        """Returns the foul of the robot that has been where it may not for the longest time."""
+    def watch(self, scene: Scene) -> list[Foul]:
+        """Returns the fouls of robots that have been where they may not for too long, one of each team at most."""
         keepers = {side: next(iter(scene.sight.team(scene.ends.defender(side))), "") for side in SIDES}
         inside = {
             name: side
@@ -28,17 +28,17 @@ class Areas:
         self._inside_s = {name: self._inside_s.get(name, 0.0) + scene.duration_s for name in inside}
         forbidden = [name for name in inside if self._is_second(name, inside) or self._in_goal_area(scene, name)]
         self._forbidden_s = {name: self._forbidden_s.get(name, 0.0) + scene.duration_s for name in forbidden}
-        for name, time_s in self._forbidden_s.items():
-            if time_s > scene.rules.grace_s:
+        found: dict[Team, Foul] = {}
+        for name in [name for name, time_s in self._forbidden_s.items() if time_s > scene.rules.grace_s]:
+            if team_number(name) not in found:
                 del self._forbidden_s[name]
-                return self._foul(
-                    scene, name, Reason.IN_GOAL_AREA if self._in_goal_area(scene, name) else Reason.TOO_MANY_IN_AREA
-                )
-        for name, time_s in self._inside_s.items():
-            if time_s > scene.rules.area_s:
+                reason = Reason.IN_GOAL_AREA if self._in_goal_area(scene, name) else Reason.TOO_MANY_IN_AREA
+                found[team_number(name)] = Foul(name, reason, scene.sight.robots[name])
+        for name in [name for name, time_s in self._inside_s.items() if time_s > scene.rules.area_s]:
+            if team_number(name) not in found:
                 self._inside_s[name] = 0.0
-                return self._foul(scene, name, Reason.TOO_LONG_IN_AREA)
-        return None
+                found[team_number(name)] = Foul(name, Reason.TOO_LONG_IN_AREA, scene.sight.robots[name])
+        return list(found.values())
 
     def _is_second(self, name: str, inside: dict[str, float]) -> bool:
         """Returns whether a mate has been in the same area for longer."""
@@ -53,7 +53,3 @@ class Areas:
     @staticmethod
     def _in_goal_area(scene: Scene, name: str) -> bool:
         return any(scene.rules.field.in_goal_area(*scene.sight.robots[name], side) for side in SIDES)
-
-    @staticmethod
-    def _foul(scene: Scene, name: str, reason: Reason) -> Foul:
-        return Foul(name, reason, scene.sight.robots[name])

@@ -14,13 +14,15 @@ _SHOVES_M_S = 0.1  # two robots that move faster in the pusher's direction are a
 _REST = Point(0.0, 0.0)
 
 
-def collision(scene: Scene) -> Foul | None:
-    """Returns the foul of a robot that ran into a rival at speed."""
-    for event in scene.sight.events:
-        hard = event.kind is Kind.COLLISION and event.speed_m_s > scene.rules.collision_m_s
-        if hard and team_number(event.robot) is not team_number(event.other):
-            return Foul(event.robot, Reason.COLLISION, Point(event.x_m, event.y_m), direct=True)
-    return None
+def collisions(scene: Scene) -> list[Foul]:
+    """Returns the fouls of robots that ran into rivals at speed."""
+    return [
+        Foul(event.robot, Reason.COLLISION, Point(event.x_m, event.y_m), direct=True)
+        for event in scene.sight.events
+        if event.kind is Kind.COLLISION
+        and event.speed_m_s > scene.rules.collision_m_s
+        and team_number(event.robot) is not team_number(event.other)
+    ]
 
 
 class Pushing:

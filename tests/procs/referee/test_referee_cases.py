@@ -103,6 +103,10 @@ CASES = {
     "goal without a pass of 1 m after winning the ball in the own half": [
         "fouls.test_ball_won_in_the_own_half_must_be_passed"
     ],
+    "both teams at fault at once": [
+        "limits.test_both_teams_crowd_an_area_and_the_ball_is_dropped",
+        "limits.test_two_collisions_at_once_bring_a_dropped_ball",
+    ],
     "advantage": [
         "advantage.test_foul_waits_while_its_victims_have_the_ball",
         "advantage.test_advantage_is_over_after_three_seconds",

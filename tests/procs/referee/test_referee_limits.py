@@ -1,9 +1,11 @@
-"""Limits of the fouls: balls set free in time, robots that are driven into others."""
+"""Limits of the fouls: balls set free in time, robots that are driven into others, both teams at fault at once."""
 
 import pytest
 
 from procs.model.events import Event, Kind
 from procs.model.field import Point
+from procs.model.game_states import State
+from procs.model.teams import Team
 from tests.procs.referee.script import TICK_S, Script
 
 
@@ -32,3 +34,27 @@ def test_robot_that_a_rival_drives_pushes_no_other(first: str) -> None:
         script.robots |= {robot: Point(2.0 + 0.5 * place, 3.0) for place, robot in enumerate(row)}
         script.tick(**dict.fromkeys(row, Point(10 * TICK_S, 0.0)))
     assert [(call.robot, call.reason) for call in script.whistle.calls] == [(row[0], "pushing")]
+
+
+@pytest.mark.parametrize("x_m", [9.5, -9.5])
+@pytest.mark.parametrize("last", ["cyan2", "magenta2"])
+def test_both_teams_crowd_an_area_and_the_ball_is_dropped(x_m: float, last: str) -> None:
+    script = Script(deadlock_s=60.0, fouls_per_card=1).playing()
+    script.touch(last)
+    script.robots |= {"cyan2": Point(x_m, 2.0), "cyan3": Point(x_m, -2.0)}
+    script.robots |= {"magenta2": Point(x_m, 1.0), "magenta3": Point(x_m, -1.0)}
+    script.wait(1.2)
+    assert (script.state, script.reasons) == ((State.DROP_BALL, Team.NONE, True), ["too many in an area"])
+    assert script.whistle.cards.warned == {"cyan3", "magenta3"}
+
+
+@pytest.mark.parametrize("taken", [True, False])
+def test_two_collisions_at_once_bring_a_dropped_ball(taken: bool) -> None:
+    script = Script(fouls_per_card=1).started()
+    if taken:
+        script.touch("cyan2")
+        script.roll(-1.0, 0.0)
+    crash = Event(Kind.COLLISION, "cyan2", "magenta2", 9.5, 0.5, 3.5)
+    script.tick(crash, crash._replace(robot="cyan1"), crash._replace(robot="magenta3", other="cyan3"))
+    assert (script.state, script.whistle.spot) == ((State.DROP_BALL, Team.NONE, True), (0.0, 0.0))
+    assert script.whistle.cards.warned == {"cyan2", "magenta3"}
