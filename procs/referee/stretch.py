@@ -6,7 +6,7 @@ from procs.model.field import Point
 from procs.model.game_states import State
 from procs.model.teams import Ends, Team
 from procs.referee.advantage import Advantage
-from procs.referee.fouls.book import RuleBook
+from procs.referee.fouls.book import RuleBook, grave_fouls
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.rules import Rules
 from procs.referee.sight import Sight
@@ -65,11 +65,15 @@ class Stretch:
             self.piece, self.touches.late = State.PLAY, late
         self._resting_at, self._resting_s = ball, 0.0
 
-    def fouls(self, scene: Scene) -> tuple[list[Foul], list[Foul]]:
+    def fouls(self, scene: Scene, in_play: bool) -> tuple[list[Foul], list[Foul]]:
         """Returns the fouls that were committed in the tick, and those that are punished now.
 
-        Contact always stops the game, also while another foul is held back; so do two teams at fault at once.
+        Only grave ones stop a set piece that is not `in_play` yet. In play contact always stops the game, also while
+        another foul is held back; so do two teams at fault at once.
         """
+        if not in_play:
+            grave = grave_fouls(scene)
+            return grave, grave
         fouls, lost = self._book.watch(scene), self._advantage.lost(scene)
         if len(fouls) > 1 or any(foul.direct for foul in fouls):
             return fouls, fouls

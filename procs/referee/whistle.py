@@ -67,12 +67,14 @@ class Whistle(Match):
         return self.state is State.PENALTY
 
     def _end_in_time(self, duration_s: float, sight: Sight) -> None:
-        """Ends the half whose time is over; a ball that went into a goal in this last tick was there in time."""
+        """Ends the half whose time is over; goals and fouls of this last tick were in time, and a penalty is taken."""
         if not self.stopped:
-            self._stretch.watch(duration_s, sight, self.ends, self.rules)
+            scene = self._stretch.watch(duration_s, sight, self.ends, self.rules)
             left = next((event for event in sight.events if event.kind in LEAVES), None)
             if left and left.kind is Kind.GOAL:
                 self._count_goal(left, sight)
+            elif not left and self._punish(scene, only=State.PENALTY):
+                return
         self.end_half()
 
     def _end_break(self) -> None:
@@ -152,30 +154,19 @@ class Whistle(Match):
     def _watch_play(self, scene: Scene) -> None:
         ball = scene.sight.ball
         self._stretch.rolled(ball, self.rules)
-        committed, punished = self._stretch.fouls(scene)
-        for foul in committed:
-            self._count_foul(foul)
-        if punished:
-            self._punish(punished, ball)
-        elif self._stretch.deadlocked(scene):
+        if not self._punish(scene) and self._stretch.deadlocked(scene):
             self.interrupt(restarts.dropped_ball(ball, self.rules.field), Reason.DEADLOCK)
 
     def _watch_set_piece(self, scene: Scene) -> None:
-        ball, touched = scene.sight.ball, bool(scene.touches.robots)
-        grave = grave_fouls(scene)
-        if grave:
-            for foul in grave:
-                self._count_foul(foul)
-            self._punish(grave, ball)
-        elif self._repeat(scene):
+        if self._punish(scene) or self._repeat(scene):
             return
-        elif self._is_taken(scene):
-            self._play(ball)
+        if self._is_taken(scene):
+            self._play(scene.sight.ball)
         elif self._set_piece_is_late:
-            if self.state is State.PENALTY and not touched:
+            if self.state is State.PENALTY and not scene.touches.robots:
                 self.interrupt(self._goal_kick(), Reason.NOT_TAKEN)
             else:
-                self._play(ball, late=True)
+                self._play(scene.sight.ball, late=True)
 
     def _is_taken(self, scene: Scene) -> bool:
         """Returns whether the set piece becomes play: its ball has rolled freely, or a dropped one was touched."""
@@ -216,16 +207,30 @@ class Whistle(Match):
         self._repeats = repeats
         return True
 
-    def _punish(self, fouls: list[Foul], ball: Point) -> None:
-        """Interrupts the game for the free kick or the penalty that a foul brings; those of two teams drop the ball."""
+    def _punish(self, scene: Scene, only: State | None = None) -> bool:
+        """Counts the fouls of a tick and interrupts the game for the set piece that they bring; returns whether it did.
+
+        `only` is the one set piece for which the game is interrupted; None: any.
+        """
+        committed, punished = self._stretch.fouls(scene, in_play=self.state is State.PLAY)
+        for foul in committed:
+            self._count_foul(foul)
+        if not punished:
+            return False
+        restart = self._after_fouls(punished, scene.sight.ball)
+        if only in (None, restart.state):
+            self.interrupt(restart, punished[0].reason, punished[0].robot if len(punished) == 1 else "")
+        return only in (None, restart.state)
+
+    def _after_fouls(self, fouls: list[Foul], ball: Point) -> Restart:
+        """Returns the free kick or the penalty that a foul brings; fouls of both teams bring a dropped ball."""
         foul, field = fouls[0], self.rules.field
         offender = team_number(foul.robot)
         if len(fouls) > 1:
-            self.interrupt(restarts.dropped_ball(ball, field), foul.reason)
-        elif foul.direct and field.in_penalty_area(*foul.place, self.ends.side_of(offender)):
-            self.interrupt(restarts.penalty(offender.other, field, self.ends), foul.reason, foul.robot)
-        else:
-            self.interrupt(restarts.after_foul(foul.place, offender, field), foul.reason, foul.robot)
+            return restarts.dropped_ball(ball, field)
+        if foul.direct and field.in_penalty_area(*foul.place, self.ends.side_of(offender)):
+            return restarts.penalty(offender.other, field, self.ends)
+        return restarts.after_foul(foul.place, offender, field)
 
     def _count_foul(self, foul: Foul) -> None:
         """Counts a foul against its robot, and shows the card that it brings."""

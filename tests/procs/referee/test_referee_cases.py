@@ -119,6 +119,7 @@ CASES = {
     "two halves, change of ends, end": [
         "match.test_teams_change_ends_for_the_second_half",
         "match.test_match_ends_after_two_halves_with_a_draw",
+        "match.test_foul_in_the_last_tick_of_a_half_counts",
     ],
     "overtime and penalties": [
         "match.test_draw_is_decided_by_overtime_and_penalties_if_wanted",

@@ -232,3 +232,22 @@ def test_goal_in_the_last_tick_of_a_half_counts(place: float, by: str, score: tu
     assert (script.score, script.state) == (score, (State.HALF_TIME, Team.NONE, True))
     script.goal(place, by)
     assert script.score == score, "the ball in the goal is counted once"
+
+
+@pytest.mark.parametrize("taken", [True, False])
+@pytest.mark.parametrize(("x_m", "state"), [(9.5, State.PENALTY), (5.0, State.HALF_TIME)])
+def test_foul_in_the_last_tick_of_a_half_counts(taken: bool, x_m: float, state: State) -> None:
+    script = Script(fouls_per_card=1).started()
+    if taken:
+        script.touch("cyan2")
+        script.roll(-1.0, 0.0)
+    whistle = script.whistle
+    whistle.rules = whistle.rules.model_copy(update={"half_s": whistle.time_in_half_s + TICK_S})
+    script.tick(Event(Kind.COLLISION, "magenta2", "cyan3", x_m, 0.5, 3.5))
+    assert script.state[0] is state
+    assert whistle.cards.warned == {"magenta2"}
+    script.robots |= BESIDE
+    script.wait(1.0)
+    assert script.state == ((State.PENALTY, CYAN, False) if state is State.PENALTY else (state, Team.NONE, True))
+    script.wait(20.0)
+    assert (whistle.half, script.score) == (2, (0, 0)), "the half ends with the penalty"
