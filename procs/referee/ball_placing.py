@@ -2,6 +2,7 @@
 
 import math
 
+from procs.model.ball import RADIUS_M
 from procs.model.field import Field, Point
 
 _MISPLACED_M = 0.6  # the crew may have to put the ball beside a robot; further away, a robot has pushed it
@@ -50,18 +51,18 @@ class BallPlacing:
         self.rolls = math.dist(ball, self._before) > _ROLLS_M_S * duration_s
         self._before = ball
 
-    def is_under_way(self, ball: Point) -> bool:
+    def is_under_way(self, ball: Point, field: Field) -> bool:
         """Returns whether the crew has not had the time to put the ball on its spot."""
-        return self._since_s <= _CREW_S and self._is_away(ball)
+        return self._since_s <= _CREW_S and self._is_away(ball, field)
 
-    def is_pushed_away(self, ball: Point) -> bool:
+    def is_pushed_away(self, ball: Point, field: Field) -> bool:
         """Returns whether a robot has pushed the ball away after the crew had put it down."""
-        return self._since_s > _CREW_S and self._is_away(ball)
+        return self._since_s > _CREW_S and self._is_away(ball, field)
 
     def remember(self, ball: Point, field: Field) -> None:
         """Remembers the place of the ball in a running game; of a ball that is out, where it was first seen outside."""
         if self.left_at is None or field.in_field(*self.left_at) or field.in_field(*ball):
             self.left_at = ball
 
-    def _is_away(self, ball: Point) -> bool:
-        return math.dist(ball, self.spot) > _MISPLACED_M
+    def _is_away(self, ball: Point, field: Field) -> bool:
+        return math.dist(ball, self.spot) > _MISPLACED_M or not field.in_field(*ball, RADIUS_M)

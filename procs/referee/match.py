@@ -133,7 +133,8 @@ class Match:
 
     def start(self, sight: Sight | None = None) -> None:
         """Lets the set piece be taken; waits for a ball that was just given to the crew."""
-        self._starting = sight is not None and self.stopped and self._ball.is_under_way(sight.ball)
+        waits = sight is not None and self._ball.is_under_way(sight.ball, self.rules.field)
+        self._starting = self.stopped and waits
         if self._starting:
             return
         self._enter(self.state, self.team, stopped=False)

@@ -98,7 +98,7 @@ class Whistle(Match):
         self._ball.watch(duration_s, sight.ball)
         if self._starting:
             self.start(sight)
-        elif self._ball.is_pushed_away(sight.ball):
+        elif self._ball.is_pushed_away(sight.ball, self.rules.field):
             self._ball.put_back()
 
     def _wait_for_robots(self, duration_s: float, sight: Sight) -> None:

@@ -219,3 +219,16 @@ def test_penalty_waits_for_the_keeper_between_its_posts(comes: bool) -> None:
     script.robots["magenta1"] = Point(9.0, 0.0)
     script.tick()
     assert script.reasons == ["keeper left its area before the penalty"]
+
+
+@pytest.mark.parametrize(("y_m", "put_back"), [(7.1, False), (7.12, True)])
+def test_ball_pushed_over_the_line_before_a_throw_in(y_m: float, put_back: bool) -> None:
+    """It is near its spot, but wholly out of the field."""
+    script = Script(stoppage_s=2.0).playing()
+    script.ball = Point(3.0, 7.2)
+    script.tick(Event(Kind.OUT_SIDE, "magenta2", "", *script.ball, 3.0))
+    script.wait(1.0)
+    placed, script.ball = script.whistle.placements, Point(3.0, y_m)
+    script.wait(0.2)
+    assert script.whistle.placements == placed + put_back
+    assert script.started().ball == (Point(3.0, 6.9) if put_back else Point(3.0, y_m))
