@@ -29,6 +29,8 @@ class Stretch:
         self.touches = Touches(ball)
         self.released = False
         """The ball of the set piece has rolled so far that it was set free."""
+        self.breached = False
+        """A breach of the set piece was counted."""
         self._carrier = Carrier()
         self._book = RuleBook()
         self._advantage = Advantage()

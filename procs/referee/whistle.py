@@ -196,12 +196,18 @@ class Whistle(Match):
             self.end_half()
 
     def _repeat(self, scene: Scene) -> bool:
-        """Has the set piece repeated after a breach, twice at most; returns whether it does."""
+        """Has the set piece repeated after a breach, twice at most; returns whether it does.
+
+        The third breach is only counted as a foul, once.
+        """
         stretch = self._stretch
         foul = breach(scene, self.restart, stretch.excused, stretch.keeper, stretch.released)
-        if foul is None or self._repeats >= _REPEATS:
+        if foul is None or stretch.breached:
             return False
         self._count_foul(foul)
+        stretch.breached = True
+        if self._repeats >= _REPEATS:
+            return False
         repeats = self._repeats + 1
         self.interrupt(self.restart, foul.reason, foul.robot)
         self._repeats = repeats

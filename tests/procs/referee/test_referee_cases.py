@@ -43,6 +43,7 @@ CASES = {
         "fouls.test_wrong_taker_has_the_set_piece_repeated",
         "fouls.test_robot_that_comes_near_has_the_set_piece_repeated",
         "fouls.test_set_piece_is_repeated_twice_at_most",
+        "limits.test_third_breach_of_a_set_piece_brings_a_yellow_card",
         "set_pieces.test_robot_that_comes_back_breaches_no_set_piece",
     ],
     "set piece: a mate touches the ball before a goal counts": [

@@ -58,3 +58,23 @@ def test_two_collisions_at_once_bring_a_dropped_ball(taken: bool) -> None:
     script.tick(crash, crash._replace(robot="cyan1"), crash._replace(robot="magenta3", other="cyan3"))
     assert (script.state, script.whistle.spot) == ((State.DROP_BALL, Team.NONE, True), (0.0, 0.0))
     assert script.whistle.cards.warned == {"cyan2", "magenta3"}
+
+
+@pytest.mark.parametrize("touches", [True, False])
+def test_third_breach_of_a_set_piece_brings_a_yellow_card(touches: bool) -> None:
+    """The set piece is not repeated any more, and the breach is counted once however long it lasts."""
+    script = Script()
+    for breach in range(3):
+        script.started()
+        assert script.whistle.cards.warned == set()
+        script.robots["magenta2"] = Point(1.0, 0.0)
+        for _ in range(4 if breach == 2 else 1):
+            if touches:
+                script.touch("magenta2")
+            else:
+                script.tick()
+        script.robots["magenta2"] = Point(4.0, 2.0)
+    assert (len(script.reasons), script.whistle.stopped) == (2, False)
+    assert script.whistle.cards.warned == {"magenta2"}
+    script.wait(1.0)
+    assert script.whistle.cards.sent_off == set()
