@@ -31,6 +31,8 @@ class Stretch:
         """The ball of the set piece has rolled so far that it was set free."""
         self.breached = False
         """A breach of the set piece was counted."""
+        self.suffered: Foul | None = None
+        """Foul during a penalty that is one shot, which brings a penalty itself."""
         self._carrier = Carrier()
         self._book = RuleBook()
         self._advantage = Advantage()

@@ -176,19 +176,25 @@ class Whistle(Match):
     def _watch_penalty(self, scene: Scene) -> None:
         """Watches a penalty that is one shot: one of those that decide a match, or the last act of a half.
 
-        A foul of the team that shoots makes it a miss.
+        A foul of the team that shoots makes it a miss; after one that brings a penalty itself, a miss is repeated.
         """
         if self._repeat(scene):
             return
         reach_s = self.rules.shot_s if self.shootout else self.rules.penalty_s
         scored = penalty_scored(scene, self._stretch, self.restart, self.time_in_state_s, reach_s)
-        for foul in grave_fouls(scene):
-            if team_number(foul.robot) is self.team:
-                self._count_foul(foul)
-                scored = False
+        fouls = grave_fouls(scene)
+        for foul in fouls:
+            self._count_foul(foul)
+            if self._after_fouls([foul], scene.sight.ball) == self.restart:
+                self._stretch.suffered = foul
+        if any(team_number(foul.robot) is self.team for foul in fouls):
+            scored, self._stretch.suffered = False, None
+        suffered = self._stretch.suffered
         if scored is None:
             return
-        if self.shootout:
+        if suffered and not scored:
+            self.interrupt(self.restart, suffered.reason, suffered.robot)
+        elif self.shootout:
             self.end_penalty(scored)
         else:
             if scored:

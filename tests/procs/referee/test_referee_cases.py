@@ -78,6 +78,7 @@ CASES = {
         "cases.test_deciding_penalty_off_the_keeper_is_a_goal",
         "cases.test_keeper_at_the_ball_first_repeats_a_deciding_penalty",
         "cases.test_foul_of_the_taker_makes_a_deciding_penalty_a_miss",
+        "cases.test_deciding_penalty_is_repeated_after_a_foul_of_the_keeper",
     ],
     "deciding penalty: within 30 s": [
         "cases.test_deciding_penalty_ends_after_thirty_seconds",
@@ -201,6 +202,22 @@ def test_foul_of_the_taker_makes_a_deciding_penalty_a_miss() -> None:
     script.tick(Event(Kind.COLLISION, "cyan2", "magenta1", 9.5, 0.0, 3.5))
     script.goal(11.2, "cyan2")
     assert (script.state, script.score) == ((State.PENALTY, MAGENTA, True), (0, 0))
+
+
+@pytest.mark.parametrize("scores", [True, False])
+def test_deciding_penalty_is_repeated_after_a_foul_of_the_keeper(scores: bool) -> None:
+    script = penalties()
+    script.touch("cyan2", Kind.KICK)
+    for robot, other in (("magenta1", "cyan2"), ("magenta3", "cyan3")):
+        script.tick(Event(Kind.COLLISION, robot, other, 9.5 if robot == "magenta1" else 0.0, 0.0, 3.5))
+    assert script.state == (State.PENALTY, CYAN, False), "the ball may still roll in"
+    if scores:
+        script.goal(11.2, "cyan2")
+    else:
+        script.tick(Event(Kind.OUT_END, "cyan2", "", 11.2, 2.0, 1.0))
+    assert script.state == (State.PENALTY, MAGENTA if scores else CYAN, True)
+    assert (script.score, script.reasons) == ((int(scores), 0), [] if scores else ["collision"])
+    assert script.whistle.calls[-1].robot == ("" if scores else "magenta1")
 
 
 def test_keeper_at_the_ball_first_repeats_a_deciding_penalty() -> None:
