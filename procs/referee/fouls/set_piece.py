@@ -1,5 +1,7 @@
 """Set pieces: only the team that takes it plays the ball; rivals keep their distance until it is free (2016)."""
 
+from collections.abc import Collection
+
 from procs.model.game_states import State
 from procs.model.teams import Team, team_number
 from procs.referee.fouls.foul import Foul, Scene
@@ -26,15 +28,20 @@ def breach(scene: Scene, restart: Restart, excused: frozenset[str], keeper: str,
     if released or len(scene.touches.robots) > 1:
         return None
     near = too_near(restart, scene.sight.robots, scene.ends, scene.rules.field, _INTRUSION_M)
-    intruders = sorted(name for name in set(near) - excused if not taken or team_number(name) is restart.team.other)
+    intruders = [name for name in set(near) - excused if not taken or team_number(name) is restart.team.other]
     if intruders:
-        return Foul(intruders[0], Reason.TOO_NEAR, restart.spot)
+        return Foul(_first(intruders, restart.team), Reason.TOO_NEAR, restart.spot)
     if taken:
         return None
-    crossed = sorted(set(in_wrong_half(restart, scene.sight.robots, scene.ends, _INTRUSION_M)) - excused)
+    crossed = set(in_wrong_half(restart, scene.sight.robots, scene.ends, _INTRUSION_M)) - excused
     if crossed:
-        return Foul(crossed[0], Reason.WRONG_HALF, restart.spot)
+        return Foul(_first(crossed, restart.team), Reason.WRONG_HALF, restart.spot)
     return _keeper_left_goal(scene, restart, keeper) if keeper not in excused else None
+
+
+def _first(robots: Collection[str], team: Team) -> str:
+    """Returns the robot that is named of several: a rival of the team that takes the set piece, if there is one."""
+    return min(robots, key=lambda name: (team_number(name) is team, name))
 
 
 def _keeper_left_goal(scene: Scene, restart: Restart, keeper: str) -> Foul | None:

@@ -108,6 +108,7 @@ CASES = {
     "both teams at fault at once": [
         "limits.test_both_teams_crowd_an_area_and_the_ball_is_dropped",
         "limits.test_two_collisions_at_once_bring_a_dropped_ball",
+        "limits.test_rivals_are_named_of_those_that_breach_a_kick_off",
     ],
     "advantage": [
         "advantage.test_foul_waits_while_its_victims_have_the_ball",

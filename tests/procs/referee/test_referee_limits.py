@@ -6,7 +6,8 @@ from procs.model.events import Event, Kind
 from procs.model.field import Point
 from procs.model.game_states import State
 from procs.model.teams import Team
-from tests.procs.referee.script import TICK_S, Script
+from procs.referee import restarts
+from tests.procs.referee.script import CYAN, MAGENTA, TICK_S, Script
 
 
 @pytest.mark.parametrize("after", ["rolls", "is touched again"])
@@ -78,3 +79,15 @@ def test_third_breach_of_a_set_piece_brings_a_yellow_card(touches: bool) -> None
     assert script.whistle.cards.warned == {"magenta2"}
     script.wait(1.0)
     assert script.whistle.cards.sent_off == set()
+
+
+@pytest.mark.parametrize(("taker", "rival"), [(CYAN, "magenta3"), (MAGENTA, "cyan3")])
+@pytest.mark.parametrize("y_m", [1.0, 6.0])
+def test_rivals_are_named_of_those_that_breach_a_kick_off(taker: Team, rival: str, y_m: float) -> None:
+    script = Script()
+    script.whistle.interrupt(restarts.kick_off(taker))
+    script.started()
+    script.robots |= {"cyan3": Point(1.0, y_m), "magenta3": Point(-1.0, y_m)}
+    script.tick()
+    assert script.whistle.stopped
+    assert script.whistle.calls[-1].robot == rival
