@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 
 from procs.model.field import Point
+from procs.model.geometry import between
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.reasons import Reason
 
@@ -33,10 +34,8 @@ class Holding:
         if before is None or middle is None or was is None or scene.duration_s <= 0.0:
             return None
         moved_m = math.dist(before, ball)
-        back_m = min(
-            _backwards_m(middle, ball, Point(ball.x_m - before.x_m, ball.y_m - before.y_m)),
-            _backwards_m(middle, ball, Point(middle.x_m - was.x_m, middle.y_m - was.y_m)),
-        )
+        axis = between(before, ball, 0.5), between(was, middle, 0.5)
+        back_m = min(_way_along_m(axis, before, ball), _way_along_m(axis, was, middle))
         pulls = back_m > _BACK_M_S * scene.duration_s
         if not pulls and moved_m > _STILL_M_S * scene.duration_s:
             self._rolls(scene)
@@ -55,10 +54,12 @@ class Holding:
             self._held_s = self._pulled_m = 0.0
 
 
-def _backwards_m(middle: Point, ball: Point, moved: Point) -> float:
-    """Returns how far a motion leads from the ball towards the middle of its carrier.
+def _way_along_m(axis: tuple[Point, Point], before: Point, now: Point) -> float:
+    """Returns how far a motion leads along the axis from the ball to the middle of its carrier, half-way of the tick.
 
     Ball and robot have to move so: a ball that runs into a standing robot is not pulled.
     """
-    away_m = math.dist(middle, ball) or 1.0
-    return ((middle.x_m - ball.x_m) * moved.x_m + (middle.y_m - ball.y_m) * moved.y_m) / away_m
+    ball, middle = axis
+    length_m = math.dist(ball, middle) or 1.0
+    x_m, y_m = middle.x_m - ball.x_m, middle.y_m - ball.y_m
+    return (x_m * (now.x_m - before.x_m) + y_m * (now.y_m - before.y_m)) / length_m

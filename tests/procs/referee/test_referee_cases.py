@@ -89,6 +89,7 @@ CASES = {
         "fouls.test_pulling_the_ball_back_is_a_foul_after_30_cm",
         "fouls.test_holding_twice_with_a_short_pause_adds_up",
         "fouls.test_holding_is_counted_anew_after_a_long_roll",
+        "limits.test_ball_that_is_led_around_a_bend_is_not_pulled_back",
     ],
     "dribbling for 3 m": [
         "fouls.test_dribbling_further_than_three_metres_is_a_foul",

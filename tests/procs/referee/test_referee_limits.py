@@ -1,5 +1,7 @@
 """Limits of the fouls: balls set free in time, robots that are driven into others, both teams at fault at once."""
 
+import math
+
 import pytest
 
 from procs.model.events import Event, Kind
@@ -91,3 +93,15 @@ def test_rivals_are_named_of_those_that_breach_a_kick_off(taker: Team, rival: st
     script.tick()
     assert script.whistle.stopped
     assert script.whistle.calls[-1].robot == rival
+
+
+@pytest.mark.parametrize(("outwards_m_s", "reasons"), [(0.0, []), (0.3, ["holding"])])
+def test_ball_that_is_led_around_a_bend_is_not_pulled_back(outwards_m_s: float, reasons: list[str]) -> None:
+    """The carrier is outside of the bend, and pulls the ball only if it spirals outwards."""
+    script = Script(deadlock_s=60.0).playing()
+    for tick in range(80):
+        angle, radius_m = 2.0 * tick * TICK_S, 1.0 + outwards_m_s * tick * TICK_S
+        script.ball = Point(radius_m * math.cos(angle), radius_m * math.sin(angle))
+        script.robots["cyan3"] = Point((radius_m + 0.33) * math.cos(angle), (radius_m + 0.33) * math.sin(angle))
+        script.touch("cyan3")
+    assert script.reasons == reasons
