@@ -18,13 +18,12 @@ from procs.behaviour.view import View, view_of
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import wrap_rad
+from procs.model.kicker import tells_held
 from procs.model.robot import ABSENT, PLAYERS, ROBOT, Players, RobotModel
 from procs.model.teams import Team, team_number_of_player
 
 _EXPIRES_S = 1.0
 """Logical time within which the skiller has to begin a command."""
-_TOLD_S = 0.5
-"""A kicker that is silent for longer does not tell that the ball is held."""
 
 
 class AgentConfig(Config):
@@ -101,7 +100,7 @@ class Agent(Component):
     def _decide(self, view: View, game: Game) -> tuple[str, Order]:
         """Returns the role of the robot and its order."""
         kicker, field = self.kicker_state, self.config.field
-        held = kicker.value.ball_held and self.clock.since_s(kicker.header.time_us) <= _TOLD_S
+        held = tells_held(kicker.value, self.clock.since_s(kicker.header.time_us))
         if self._robot in game.sent_off and view.localized:
             return ABSENT, leave_field(view, field)
         if self.config.strategy == "greedy":

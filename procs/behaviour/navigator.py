@@ -15,6 +15,7 @@ from procs.behaviour.velocity_obstacles import safe_velocity
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import clamp, plausible, wrap_rad
+from procs.model.kicker import tells_held
 from procs.model.kinematics import STANDSTILL, Velocity
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel, number_of_player
 
@@ -99,6 +100,10 @@ class Navigator(Component):
     def _fresh(self, reader: Reads[drive_target_t] | Reads[world_model_t] | Reads[motor_command_t]) -> bool:
         return reader.has_value and self.clock.since_s(reader.header.time_us) <= self.config.target_timeout_s
 
+    @property
+    def _holds_ball(self) -> bool:
+        return tells_held(self.kicker_state.value, self.clock.since_s(self.kicker_state.header.time_us))
+
     def _stop(self, heading_rad: float) -> None:
         self._direction_rad = None
         self._command(STANDSTILL, heading_rad)
@@ -179,8 +184,7 @@ class Navigator(Component):
         speed_m_s = motion.speed_to_go_m_s(way.length_m, target.end_speed_m_s, limit_m_s, limits)
         if math.isfinite(way.free_m) and way.free_m < way.length_m:
             speed_m_s = min(speed_m_s, motion.speed_to_go_m_s(way.free_m, 0.2, limit_m_s, limits))
-        held = self.kicker_state.value.ball_held
-        omega_limit_rad_s = limits.ball_omega_rad_s if held else limits.omega_rad_s
+        omega_limit_rad_s = limits.ball_omega_rad_s if self._holds_ball else limits.omega_rad_s
         return Velocity(
             speed_m_s * math.cos(way.direction_rad),
             speed_m_s * math.sin(way.direction_rad),
@@ -188,7 +192,7 @@ class Navigator(Component):
         )
 
     def _command(self, wanted: Velocity, heading_rad: float) -> None:
-        limits, held = self.config.limits, self.kicker_state.value.ball_held
+        limits, held = self.config.limits, self._holds_ball
         change_m_s2 = self._ball_change_m_s2(wanted, heading_rad) if held else limits.acceleration_m_s2
         turn_rad_s2 = limits.ball_angular_acceleration_rad_s2 if held else limits.angular_acceleration_rad_s2
         period_s = self.clock.iteration_s

@@ -24,13 +24,14 @@ from procs.behaviour.view import view_of
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import plausible
+from procs.model.kicker import tells_held
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.teams import Team, team_number_of_player
 
 _KICK_TIMEOUT_S = 0.15
 """A kick without an answer by then has failed."""
 _SEEN_S = 0.5
-"""Older percepts do not count, and neither does a ball that the kicker held."""
+"""Older percepts do not count."""
 _TOLD_MAX = 100
 """Number of unknown skills that are told in the log; made-up names do not fill it."""
 
@@ -128,7 +129,6 @@ class Skiller(Component):
     def _scene(self) -> Scene:
         command = self._request.value if self._request else skill_command_t()
         kicker = self.kicker_state.value
-        told = self.clock.since_s(self.kicker_state.header.time_us) <= _SEEN_S
         game = game_of(self.game_state.value, self._team, self._frame)
         model, players = self.world_model.value, self.config.players
         view = view_of(model, self._robot, "", self._frame, players=players, bodies=self._bodies)
@@ -137,7 +137,7 @@ class Skiller(Component):
             self._frame.point(command.x_m, command.y_m),
             self._frame.heading_rad(command.heading_rad),
             command.speed_m_s,
-            kicker.ball_held and told,
+            tells_held(kicker, self.clock.since_s(self.kicker_state.header.time_us)),
             kicker.charged,
             self._kick.done if self._kick and self._kick.finished else None,
             set_piece=game.whose is Whose.OURS and not game.free_play,

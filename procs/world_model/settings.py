@@ -10,7 +10,7 @@ from procs.model.units import US_PER_S
 from procs.world_model.opponents import OpponentSettings
 
 STALE_S = 0.5
-"""Older sightings, and older statements of the own kicker and skiller, do not count."""
+"""Older sightings, and older targets of the own skiller, do not count."""
 RESTART_S = 2.0
 """A robot whose agent is silent for longer does not play."""
 

@@ -25,6 +25,7 @@ from lcmtypes.soccer import (
     world_model_t,
 )
 from procs.model.geometry import plausible
+from procs.model.kicker import tells_held
 from procs.model.robot import ABSENT, TEAM_NUMBERS, player_of
 from procs.model.units import US_PER_S
 from procs.world_model.ball_follower import BallFollower, BallNews
@@ -72,8 +73,7 @@ class WorldModel(Component):
         self._team = Team()
         self._view: OwnView | None = None
         self._holds = False
-        self._kicker_us = self._role_us = self.clock.now_us
-        """Time of the newest message of the own kicker, and of the own agent."""
+        self._role_us = self.clock.now_us  # time of the newest message of the own agent
         self._last_us = 0
         self._sent_us = -US_PER_S  # the first message is due at once
         self._untold_obstacles = Seen.NOTHING  # own sightings since the last message
@@ -83,12 +83,9 @@ class WorldModel(Component):
         passed_s = self.clock.since_s(self._last_us) if self._last_us else self.clock.iteration_s
         self._last_us = self.clock.now_us
         known = self.pose.refreshed
-        if self.kicker_state.refreshed:
-            self._kicker_us = self.clock.now_us
         if self.role.refreshed:
             self._role_us = self.clock.now_us
-        # A kicker that has fallen silent does not know whether the ball is in the mouth.
-        self._holds = bool(self.kicker_state.value.ball_held) and self.clock.since_s(self._kicker_us) <= STALE_S
+        self._holds = tells_held(self.kicker_state.value, self.clock.since_s(self.kicker_state.header.time_us))
         view = OwnView(self.pose.value, self.odometry.value, known, config.shake_s_m, self._view, passed_s)
         self._view = view
         told = self._listen(now_s)

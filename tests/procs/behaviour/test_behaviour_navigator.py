@@ -68,6 +68,22 @@ def test_robot_with_the_ball_accelerates_most_towards_it() -> None:
     assert changes_m_s(held=True, x_m=5.0) == pytest.approx([0.2] * 3)
 
 
+def test_robot_of_a_silent_kicker_drives_as_without_a_ball() -> None:
+    bench = Bench(Navigator, "cyan2/navigator")
+    put(bench, "kicker_state", ball_held=True)
+    x_m = -5.0
+    for _ in range(25):
+        put(bench, "world_model", localized=True)
+        put(bench, "odometry")
+        put(bench, "drive_target", x_m=x_m)
+        bench.iterate()
+        x_m = -x_m  # it never reaches its highest speed
+    speeds_m_s = [0.0, *(command.vx_m_s for command in bench.port("motor_command").sent)]
+    changes_m_s = [before - after for before, after in itertools.pairwise(speeds_m_s)]
+    assert changes_m_s[0] == pytest.approx(0.125)
+    assert changes_m_s[-1] == pytest.approx(0.15)
+
+
 def test_robot_turns_about_a_point_near_its_ball() -> None:
     bench = Bench(Navigator, "cyan2/navigator")
     put(bench, "world_model", localized=True)
