@@ -59,6 +59,5 @@ def job_among_silent(view: View, rank: int, field: Field, game: Game = PLAY) -> 
     own_s = time_to_ball_s(view.own, view.ball, course) - _STAY_S * (view.own.role == ATTACKER)
     if own_s <= mates_s and view.own.role != PASSER:
         return Job(ATTACKER, view.ball.place)
-    found = posts(1, view, field, game, mates_s <= opponents_time_s(view, course))
-    post = (rank - 1) % len(found)
-    return Job(DEFENDER if post else SUPPORTER, found[post])
+    found = posts(rank, view, field, game, mates_s <= opponents_time_s(view, course))
+    return Job(SUPPORTER if rank == 1 else DEFENDER, found[rank - 1])

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Sequence
 
+from procs.behaviour.bodies import USUAL, Bodies
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.path import Disc
 from procs.behaviour.shortest import first_turn
@@ -15,20 +16,21 @@ _OWN_SET_PIECE_M, _THEIR_SET_PIECE_M, _DROPPED_BALL_M = 2.3, 3.3, 1.3
 """Distances from the ball of a set piece: those of the rules and 0.3 m more."""
 _PASSES_M, _TOO_NEAR_M = 0.1, 0.15  # a robot passes the circle, or is too near and leaves it, so much nearer
 _TAKER_M = 0.75  # from the middle of a waiting taker to the ball
-_LAYOFF_M, _LAYOFF_RAD = 2.4, (0.55, 0.8, 1.1, 1.5, 1.9)
+_LAYOFF_M, _LAYOFF_RAD = 2.4, (0.55, 0.8, 1.1, 1.5, 1.9, 2.3)
 """Distance of the receiver from the ball of the own set piece, and its least angle off the straight way back."""
 _AREA_M = 0.35
 """Robots without the ball keep that distance from the penalty areas."""
-_APART_M = 1.0
-"""Least distance of two places."""
+_APART_M, _BESIDE_M = 1.0, 0.1
+"""Least distance of two places, and of two bodies at them, which decides for large robots."""
+_OFF_WALL_M = 0.1  # between a body at a place and the wall
+_FURTHER_M = 0.5  # where all places at a distance from the ball are taken, the next ones are so much further away
 _TURNS_RAD = [sign * 0.15 * step for step in range(1, 21) for sign in (1, -1)]
 _LENGTH_M, _WIDTH_M = 22.0, 14.0
 """Field for which the distances of formations are; they become larger or smaller with the field."""
 _BACK_M, _STOPPER_M = 0.75, 0.95  # before the own penalty area: the furthest place back, and the nearest to the goal
 _SHOOTER_M, _SHOOTER_Y_M = 1.75, 2.5  # a mate so far before the opponents' penalty area, and so far aside, can shoot
 _BESIDE_FIELD_M = 0.3  # a robot at the side of the field may stand so far outside
-_BODIES_M = 0.6  # least distance of the middles of two robots
-_PASSED_M = 0.7  # from the middle of a robot that is passed
+_PASSED_M = 0.2  # between the bodies of a robot and one that it passes
 _STEP_M = 1.5  # far enough ahead that the robot does not brake
 _SHOT_M, _BESIDE_SHOT_M = 8.0, 1.2
 """Distance from which a mate with the ball shoots, and distance of the others from the way to the goal's middle."""
@@ -96,6 +98,21 @@ def further_places(count: int, others: Sequence[Point], ball: Point, flank: floa
     return found
 
 
+def spread(places: Sequence[Point], field: Field, bodies: Bodies) -> list[Point]:
+    """Returns the places of play; robots that would touch at them, as on a small field, stand side by side."""
+    apart_m, found = 2 * bodies.robot_radius_m + _BESIDE_M, list[Point]()
+
+    def is_free(place: Point) -> bool:
+        return all(math.dist(place, other) >= apart_m for other in found)
+
+    for place in places:
+        asides_m = (sign * 0.5 * apart_m * step for step in range(1, 4 * len(places)) for sign in (1.0, -1.0))
+        beside = (Point(place.x_m, place.y_m + aside_m) for aside_m in asides_m)
+        possible = (each for each in beside if _is_inside(each, field, bodies) and not _in_area(each, field))
+        found.append(place if is_free(place) else next(filter(is_free, possible), place))
+    return found
+
+
 def scale(field: Field) -> tuple[float, float]:
     """Returns how many times as long and as wide as the usual field a field is."""
     return field.length_m / _LENGTH_M, field.width_m / _WIDTH_M
@@ -141,35 +158,36 @@ def layoff_place(game: Game, field: Field) -> Point:
     nearly looks at the opponents' goal, and so can play on without a turn; beside the taker, to see past it.
     """
     back_rad = bearing_rad(game.spot, field.goal_centre(1.0)) + math.pi
+    nearer, further = [], []  # to the middle than that on the other side
     for turn_rad in _LAYOFF_RAD:
-        places = [ahead(game.spot, back_rad + sign * turn_rad, _LAYOFF_M) for sign in (1.0, -1.0)]
-        place = min(places, key=lambda place: (abs(place.y_m), place.y_m))
-        if field.in_field(*place, -0.3):
-            break
-    return place
+        both = [ahead(game.spot, back_rad + sign * turn_rad, _LAYOFF_M) for sign in (1.0, -1.0)]
+        both.sort(key=lambda place: (abs(place.y_m), place.y_m))
+        nearer.append(both[0])
+        further.append(both[1])
+    return next((place for place in (*nearer, *further) if field.in_field(*place, -0.3)), nearer[-1])
 
 
-def first_opponent_place(game: Game, field: Field) -> Point:
+def first_opponent_place(game: Game, field: Field, bodies: Bodies = USUAL) -> Point:
     """Returns the place of the nearest robot at the other team's set piece: between the ball and the own goal.
 
     Where the goal is nearer to the ball than the rules let a robot come, it is beside that way.
     """
-    place = allowed(ahead(game.spot, bearing_rad(game.spot, field.goal_centre(-1.0)), _keep_off_m(game)), game, field)
-    return place if field.in_field(*place) else _around(place, game, field)
+    place = ahead(game.spot, bearing_rad(game.spot, field.goal_centre(-1.0)), _keep_off_m(game))
+    return allowed(place, game, field, bodies)
 
 
-def helper_place(place: Point, game: Game, field: Field, taken: Sequence[Point] = ()) -> Point:
+def helper_place(place: Point, game: Game, field: Field, taken: Sequence[Point] = (), bodies: Bodies = USUAL) -> Point:
     """Returns the place of a robot that is not the nearest of its team: one near `place` that the rules allow.
 
     It is apart from the places of mates that are `taken`, and from that of the nearest robot.
     """
-    place = allowed(place, game, field)
+    place = allowed(place, game, field, bodies)
     if game.whose is not Whose.OURS:
-        taken = [*taken, first_opponent_place(game, field)]
-    return place if _is_apart(place, taken) else _around(place, game, field, taken)
+        taken = [*taken, first_opponent_place(game, field, bodies)]
+    return place if _is_apart(place, taken, bodies) else _around(place, game, field, bodies, taken)
 
 
-def allowed(place: Point, game: Game, field: Field) -> Point:
+def allowed(place: Point, game: Game, field: Field, bodies: Bodies = USUAL) -> Point:
     """Returns the place, or one near it that the rules of the set piece allow."""
     if game.free_play:
         return place
@@ -179,8 +197,9 @@ def allowed(place: Point, game: Game, field: Field) -> Point:
         if not field.in_field(*ahead(game.spot, way_rad, distance_m)):
             way_rad = bearing_rad(game.spot, Point(-0.3 * field.half_length_m, 0.0))
         place = ahead(game.spot, way_rad, distance_m)
-    if game.state is not State.PENALTY and _in_area(place, field):
-        place = _around(place, game, field)
+    in_area = game.state is not State.PENALTY and _in_area(place, field)
+    if in_area or not _is_inside(place, field, bodies):
+        place = _around(place, game, field, bodies)
     if game.state is State.KICK_OFF and place.x_m > -_HALFWAY_M:
         aside_m = math.sqrt(max(0.0, distance_m**2 - _HALFWAY_M**2))
         y_m = math.copysign(max(abs(place.y_m), aside_m), place.y_m)
@@ -188,7 +207,9 @@ def allowed(place: Point, game: Game, field: Field) -> Point:
     return place
 
 
-def next_step(own: Point, place: Point, game: Game, field: Field, others: Iterable[Robot] = ()) -> Point:
+def next_step(
+    own: Point, place: Point, game: Game, field: Field, others: Iterable[Robot] = (), bodies: Bodies = USUAL
+) -> Point:
     """Returns the place, or a place on a way there that keeps the distance to the ball of a set piece.
 
     A robot that is too near to the ball goes to the nearest place at the distance that the arena, the areas and the
@@ -198,12 +219,13 @@ def next_step(own: Point, place: Point, game: Game, field: Field, others: Iterab
         return place
     distance_m, taken = _keep_off_m(game), [other.place for other in others]
     if math.dist(own, game.spot) < distance_m - _TOO_NEAR_M:
-        return _way_out(own, game, field, distance_m, taken)
+        return _way_out(own, game, field, distance_m, taken, bodies)
     goes_home = game.state is State.KICK_OFF and own.x_m > 0.0
-    return _way_around(own, place, Disc(game.spot, distance_m - _PASSES_M), field, taken if goes_home else ())
+    robots = [Disc(other, 2 * bodies.robot_radius_m + _PASSED_M) for other in taken if goes_home]
+    return _way_around(own, place, Disc(game.spot, distance_m - _PASSES_M), field, robots)
 
 
-def _way_around(own: Point, place: Point, circle: Disc, field: Field, others: Sequence[Point]) -> Point:
+def _way_around(own: Point, place: Point, circle: Disc, field: Field, robots: Sequence[Disc]) -> Point:
     """Returns the next place on the shortest way in the field around the circle and the robots at it.
 
     The freest tangent of the circle does not do: where a wall or a robot closes it, the detour leads into the circle,
@@ -213,18 +235,17 @@ def _way_around(own: Point, place: Point, circle: Disc, field: Field, others: Se
     def possible(turn: Point) -> bool:
         return field.in_field(*turn, _BESIDE_FIELD_M)
 
-    robots = [Disc(other, _PASSED_M) for other in others]
     turn = first_turn(own, place, [circle, *robots], possible) or first_turn(own, place, [circle], possible) or place
     return turn if turn == place else ahead(own, bearing_rad(own, turn), _STEP_M)
 
 
-def _way_out(own: Point, game: Game, field: Field, distance_m: float, taken: Sequence[Point]) -> Point:
-    straight_rad = bearing_rad(game.spot, own)
+def _way_out(own: Point, game: Game, field: Field, distance_m: float, taken: Sequence[Point], bodies: Bodies) -> Point:
+    straight_rad, bodies_m = bearing_rad(game.spot, own), 2 * bodies.robot_radius_m + _BESIDE_M
     for turn_rad in (0.0, *_TURNS_RAD):
         place = ahead(game.spot, straight_rad + turn_rad, distance_m)
         inside = field.in_field(*place, _BESIDE_FIELD_M)
         allowed_there = game.state is State.PENALTY or not _in_area(place, field)
-        if inside and allowed_there and all(math.dist(place, other) > _BODIES_M for other in taken):
+        if inside and allowed_there and all(math.dist(place, other) > bodies_m for other in taken):
             return place
     return ahead(game.spot, straight_rad, distance_m)
 
@@ -233,18 +254,31 @@ def _in_area(place: Point, field: Field) -> bool:
     return any(field.in_penalty_area(*place, side, _AREA_M) for side in SIDES)
 
 
-def _around(place: Point, game: Game, field: Field, taken: Sequence[Point] = ()) -> Point:
-    """Returns the nearest place at the same distance from the ball that is outside the areas and apart from `taken`."""
+def _around(place: Point, game: Game, field: Field, bodies: Bodies, taken: Sequence[Point] = ()) -> Point:
+    """Returns the nearest place that is in the field, at a kick-off in the own half, outside the areas, and apart from
+    `taken`.
+
+    Its distance from the ball is the same, or larger by as little as possible.
+    """
     distance_m, way_rad = math.dist(game.spot, place), bearing_rad(game.spot, place)
-    for turn_rad in _TURNS_RAD:
-        other = ahead(game.spot, way_rad + turn_rad, distance_m)
-        if _is_apart(other, taken) and field.in_field(*other) and not _in_area(other, field):
-            return other
+    for further in range(math.ceil((field.length_m + field.width_m) / _FURTHER_M)):
+        for turn_rad in (0.0, *_TURNS_RAD):
+            other = ahead(game.spot, way_rad + turn_rad, distance_m + further * _FURTHER_M)
+            own_half = game.state is not State.KICK_OFF or other.x_m <= -_HALFWAY_M
+            free = own_half and _is_inside(other, field, bodies) and not _in_area(other, field)
+            if free and _is_apart(other, taken, bodies):
+                return other
     return place
 
 
-def _is_apart(place: Point, taken: Sequence[Point]) -> bool:
-    return all(math.dist(place, other) >= _APART_M for other in taken)
+def _is_inside(place: Point, field: Field, bodies: Bodies) -> bool:
+    """Returns whether a place is in the field, and the body of a robot there is off the wall."""
+    return field.in_field(*place, min(0.0, field.border_m - bodies.robot_radius_m - _OFF_WALL_M))
+
+
+def _is_apart(place: Point, taken: Sequence[Point], bodies: Bodies) -> bool:
+    apart_m = max(_APART_M, 2 * bodies.robot_radius_m + _BESIDE_M)
+    return all(math.dist(place, other) >= apart_m for other in taken)
 
 
 def _keep_off_m(game: Game) -> float:

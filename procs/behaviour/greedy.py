@@ -82,7 +82,8 @@ def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Fie
     if not takes:
         along, _ = formation.scale(field)
         place = Point(game.spot.x_m - _BEHIND_M * along * _rank(view), 0.5 * game.spot.y_m)
-        step = formation.next_step(view.own.place, formation.allowed(place, game, field), game, field, view.others)
+        place = formation.allowed(place, game, field, view.bodies)
+        step = formation.next_step(view.own.place, place, game, field, view.others, view.bodies)
         return DEFENDER, Order("goto", step, bearing_rad(step, game.spot), "keep distance")
     if holds_ball and _is_alone(view):
         return ATTACKER, _play(view, field)

@@ -24,14 +24,15 @@ def posts(
     which side the supporter drives. A dropped ball counts as the other team's.
     """
     if game.free_play:
-        return _formation(count, view.ball.place, sooner, _flank(view.ball.place, supporter), field)
+        found = _formation(count, view.ball.place, sooner, _flank(view.ball.place, supporter), field)
+        return formation.spread(found, field, view.bodies)
     received = _receiver_place(view, field, game, supporter)
     found = _formation(count, game.spot, game.whose is Whose.OURS, _set_piece_flank(game, received), field)
     if received:
         found[0] = received
     places: list[Point] = []
     for place in found:
-        places.append(formation.helper_place(place, game, field, places))
+        places.append(formation.helper_place(place, game, field, places, view.bodies))
     return places
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 from procs.behaviour import aim, formation
-from procs.behaviour.bodies import Bodies
+from procs.behaviour.bodies import USUAL, Bodies
 from procs.behaviour.game import Game
 from procs.behaviour.view import Robot
 from procs.model.field import Field, Point
@@ -92,13 +92,13 @@ def choose(game: Game, rivals: Sequence[Robot], field: Field, bodies: Bodies) ->
     if not variants:
         return None
     turn = game.number % len(variants)
-    found = [(each.name, receiver_place(each, game, field)) for each in (*variants[turn:], *variants[:turn])]
+    found = [(each.name, receiver_place(each, game, field, bodies)) for each in (*variants[turn:], *variants[:turn])]
     return max(found, key=lambda each: min(aim.LANE_RAD, _room_rad(game.spot, each[1], rivals, bodies)))
 
 
-def receiver_place(variant: Variant, game: Game, field: Field) -> Point:
+def receiver_place(variant: Variant, game: Game, field: Field, bodies: Bodies = USUAL) -> Point:
     """Returns the receiver's place within the rules."""
-    return formation.helper_place(variant.place(game, field), game, field)
+    return formation.helper_place(variant.place(game, field), game, field, bodies=bodies)
 
 
 def _room_rad(spot: Point, place: Point, rivals: Sequence[Robot], bodies: Bodies) -> float:

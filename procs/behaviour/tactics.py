@@ -132,7 +132,7 @@ class Tactics:
             return self._await_touch(view)
         if job.role == ATTACKER and not keeper_takes(view, self.field):
             return self._go_for_ball(view)
-        return self._help(view, game, job)
+        return self._help(view, job)
 
     def _keep(self, view: View, game: Game, holds_ball: bool) -> Order:
         if game.free_play and holds_ball:
@@ -178,7 +178,7 @@ class Tactics:
         return Order("get_ball", game.spot, way_rad, "take set piece")
 
     def _next_step(self, view: View, place: Point, game: Game) -> Point:
-        return formation.next_step(view.own.place, place, game, self.field, view.others)
+        return formation.next_step(view.own.place, place, game, self.field, view.others, view.bodies)
 
     def _plan(self, view: View, game: Game) -> tuple[str, Point] | None:
         """Returns the variant of the own set piece and the receiver's place, chosen while the game is stopped."""
@@ -194,11 +194,9 @@ class Tactics:
 
     def _helper_place(self, view: View, game: Game, job: Job) -> Point:
         """Returns the place of a robot that does not take the set piece; the receiver's is told by the taker."""
-        place = formation.helper_place(job.place, game, self.field)
-        if game.whose is not Whose.OURS:
-            return place
         told = [mate.agreement.place for mate in view.mates if mate.name == self.passing.said.passer]
-        return formation.helper_place(told[0], game, self.field) if told else place
+        place = told[0] if told and game.whose is Whose.OURS else job.place
+        return formation.helper_place(place, game, self.field, bodies=view.bodies)
 
     def _play_ball(self, view: View) -> Order:
         if self._taking and self._penalty:
@@ -236,14 +234,14 @@ class Tactics:
             return Order("receive" if passed else "intercept", ball.place, goal_rad, "intercept")
         return Order("get_ball", ball.place, goal_rad, "get ball")
 
-    def _help(self, view: View, game: Game, job: Job) -> Order:
+    def _help(self, view: View, job: Job) -> Order:
         if self.passing.said.passer:
             return Order("receive", view.own.place, bearing_rad(view.own.place, view.ball.place), "await pass")
         if job.role == DEFENDER:
             runner = _free_opponent(view, self.field)
             if runner and _nearest_defender(view, runner, _MARK_M):
                 return Order("mark", runner.place, bearing_rad(runner.place, view.ball.place), "mark")
-        place = formation.allowed(job.place, game, self.field)
+        place = job.place
         if view.ball.is_near(field_players(view), _HELD_M):
             place = formation.beside_shot(view.own.place, place, view.ball.place, self.field)
         return self._stand(view, place, job.role)

@@ -106,8 +106,8 @@ class Block(StateMachine):
         view, field, game = scene.view.without(scene.game.sent_off), scene.field, scene.game
         if math.dist(scene.place, game.spot) < _LAID_M:
             game = game._replace(spot=scene.place)
-        wanted = formation.first_opponent_place(game, field)
-        place = formation.next_step(view.own.place, wanted, game, field, view.others)
+        wanted = formation.first_opponent_place(game, field, view.bodies)
+        place = formation.next_step(view.own.place, wanted, game, field, view.others, view.bodies)
         facing = view.ball.place if view.ball.known else game.spot
         return Drive(place, bearing_rad(place, facing), scene.speed_m_s, avoid_ball=True)
 
