@@ -197,8 +197,7 @@ def allowed(place: Point, game: Game, field: Field, bodies: Bodies = USUAL) -> P
         if not field.in_field(*ahead(game.spot, way_rad, distance_m)):
             way_rad = bearing_rad(game.spot, Point(-0.3 * field.half_length_m, 0.0))
         place = ahead(game.spot, way_rad, distance_m)
-    in_area = game.state is not State.PENALTY and _in_area(place, field)
-    if in_area or not _is_inside(place, field, bodies):
+    if _in_area(place, field) or not _is_inside(place, field, bodies):
         place = _around(place, game, field, bodies)
     if game.state is State.KICK_OFF and place.x_m > -_HALFWAY_M:
         aside_m = math.sqrt(max(0.0, distance_m**2 - _HALFWAY_M**2))
@@ -244,8 +243,7 @@ def _way_out(own: Point, game: Game, field: Field, distance_m: float, taken: Seq
     for turn_rad in (0.0, *_TURNS_RAD):
         place = ahead(game.spot, straight_rad + turn_rad, distance_m)
         inside = field.in_field(*place, _BESIDE_FIELD_M)
-        allowed_there = game.state is State.PENALTY or not _in_area(place, field)
-        if inside and allowed_there and all(math.dist(place, other) > bodies_m for other in taken):
+        if inside and not _in_area(place, field) and all(math.dist(place, other) > bodies_m for other in taken):
             return place
     return ahead(game.spot, straight_rad, distance_m)
 

@@ -38,6 +38,11 @@ class Game(NamedTuple):
         return is_free(self.state, self.stopped)
 
     @property
+    def faces_penalty(self) -> bool:
+        """True if the other team has a penalty."""
+        return self.state is State.PENALTY and self.whose is Whose.THEIRS
+
+    @property
     def paused(self) -> bool:
         """True if no robot may move."""
         return self.state in (State.FROZEN, State.HALF_TIME)

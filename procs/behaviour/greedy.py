@@ -27,16 +27,16 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
     """Returns the role and the order of a robot, in the attack frame.
 
     The lowest number of the robots that play keeps the goal, the next one takes the set pieces; a robot that is alone
-    plays, whatever its number. In play the robot that believes itself nearest to the ball goes for it and shoots; the
-    others line up behind it. A taker shoots from where it is, and leaves the ball alone until another robot is at it,
-    if it has mates.
+    plays, whatever its number, and keeps the goal at a penalty of the other team. In play the robot that believes
+    itself nearest to the ball goes for it and shoots; the others line up behind it. A taker shoots from where it is,
+    and leaves the ball alone until another robot is at it, if it has mates.
     """
     mates = _mates(view)
     rank, ball = _rank(view), view.ball.place
     if game.paused or not view.localized:
         return DEFENDER, Order("stop", intention="pause" if game.paused else "lost")
     alone = _is_alone(view)
-    if rank == _KEEPER and not alone:
+    if game.faces_penalty if alone else rank == _KEEPER:
         return GOALKEEPER, Order("shoot", field.goal_centre(1.0)) if holds_ball else Order("keep_line")
     if not game.free_play:
         takes = (rank == _TAKER or alone) and game.whose is Whose.OURS

@@ -82,6 +82,15 @@ def test_robot_that_is_alone_plays_whatever_its_number(name: str) -> None:
     assert decide(near, PLAY, True, FIELD)[1].skill == "shoot"
 
 
+def test_robot_that_is_alone_keeps_the_goal_at_their_penalty() -> None:
+    game, alone = (
+        Game(State.PENALTY, True, Whose.THEIRS, Point(-7.4, 0.0)),
+        view(robot("cyan4", -1.0, 0.0), ball(-7.4, 0.0)),
+    )
+    assert decide(alone, game, False, FIELD)[1].skill == "keep_line"
+    assert decide(alone, game._replace(whose=Whose.OURS), False, FIELD)[1].intention == "take set piece"
+
+
 def test_robot_whose_mates_are_silent_is_not_alone() -> None:
     seen = view(robot("cyan1", -10.0, 0.0), ball(0.0, 0.0))._replace(silent_mates=OTHERS)
     assert decide(seen, PLAY, False, FIELD)[0] == "goalkeeper"

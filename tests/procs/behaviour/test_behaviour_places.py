@@ -57,6 +57,8 @@ def games(field: Field) -> Iterator[Game]:
             yield Game(state, True, whose, spot, number=number)
     for whose, number in itertools.product(Whose, (0, 1)):
         yield Game(State.KICK_OFF, True, whose, number=number)
+    for whose, side in ((Whose.OURS, 1.0), (Whose.THEIRS, -1.0)):
+        yield Game(State.PENALTY, True, whose, field.penalty_mark(side))
 
 
 def bodies(radius_m: float) -> Bodies:

@@ -77,6 +77,12 @@ def test_lone_robot_attacks_and_lower_number_of_two_keeps_goal() -> None:
     assert (two["cyan2"].role, two["cyan3"].role) == (GOALKEEPER, ATTACKER)
 
 
+def test_lone_robot_keeps_the_goal_at_their_penalty_only() -> None:
+    for whose, role in ((Whose.THEIRS, GOALKEEPER), (Whose.OURS, ATTACKER)):
+        game = Game(State.PENALTY, stopped=True, whose=whose, spot=Point(-7.4, 0.0))
+        assert assign(view(TEAM[2], ball(-7.4, 0.0)), FIELD, game=game)["cyan3"].role == role
+
+
 def test_keeper_that_does_not_play_is_replaced_when_it_is_off() -> None:
     """Until then the referee takes the lowest number for the goalkeeper, and another robot in the area for a foul."""
     silent = TEAM[0]._replace(role=ABSENT)
