@@ -126,6 +126,8 @@ class Course:
     """The ball's way during the next four seconds, and how far a robot can get meanwhile."""
 
     def __init__(self, ball: Ball, bodies: Bodies) -> None:
+        self.bodies = bodies
+        """Sizes of the robots and the ball."""
         self._ball = ball
         self._contact_m = contact_m = bodies.held_ball_m  # distance of the middles of ball and robot that meet
         speed_m_s = ball.speed_m_s

@@ -12,7 +12,7 @@ from procs.model.geometry import bearing_rad, between, clamp
 from procs.model.robot import ABSENT
 
 _KEEPER, _TAKER = 1, 2  # ranks in the team
-_TOUCHED_M = 0.5  # a robot this near to the ball has touched it
+_TOUCHED_M = 0.14  # a robot with the ball so near to its body has touched it
 _CLEAR_M = 0.5  # distance from the own penalty area
 _PUSH = 0.2  # share of the way to the goal for which a robot that is alone pushes the ball ahead
 _MIDDLE = 3.5  # mean of the ranks of the robots that do not have the ball, in the usual line-up
@@ -41,7 +41,8 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
     if not game.free_play:
         takes = (rank == _TAKER or alone) and game.whose is Whose.OURS
         return _set_piece(view, game, takes, holds_ball, field)
-    taken = view.own.role == PASSER and bool(mates) and not view.ball.is_near(view.others, _TOUCHED_M)
+    touched = view.ball.is_near(view.others, view.bodies.beside_m + _TOUCHED_M)
+    taken = view.own.role == PASSER and bool(mates) and not touched
     if holds_ball and taken:
         return PASSER, Order("shoot", field.goal_centre(1.0), intention="take set piece")
     if holds_ball:

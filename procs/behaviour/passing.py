@@ -14,7 +14,7 @@ ANSWER_S = 0.5
 """An announced pass that is not accepted for longer is dropped: the way to the mate and back takes 0.2 s to 0.4 s."""
 _REFUSED_S = 1.5  # for so long the mate is not asked again
 _FLIGHT_S = 2.5  # a pass has arrived by then, or got lost
-_TAKEN_M = 0.42  # a robot this near to the ball has it
+_TAKEN_M = 0.06  # a robot with the ball so near to its body has it
 _STANDS_M_S = 0.5  # a slower receiver stands, as far as its mates know ...
 _STOPS_S = 0.4  # ... and has stopped so long after its answer
 
@@ -82,9 +82,9 @@ def _announcer(view: View) -> str:
 
 
 def _arrived(view: View, receiver: str) -> bool:
-    return any(mate.name == receiver and math.dist(mate.place, view.ball.place) < _TAKEN_M for mate in view.mates)
+    return view.ball.is_near((mate for mate in view.mates if mate.name == receiver), view.bodies.beside_m + _TAKEN_M)
 
 
 def taken(view: View) -> bool:
     """Returns whether an opponent has the ball."""
-    return view.ball.is_near(view.opponents, _TAKEN_M)
+    return view.ball.is_near(view.opponents, view.bodies.beside_m + _TAKEN_M)

@@ -17,7 +17,7 @@ GOALKEEPER, ATTACKER, SUPPORTER, DEFENDER = "goalkeeper", "attacker", "supporter
 PASSER = "passer"
 """Took a set piece and may not touch the ball before another robot has."""
 
-_HAS_BALL_M = 0.45
+_HAS_BALL_M = 0.09  # beside its body a robot has the ball
 _ROLLS_M_S = 0.6  # the nearest robot takes a slower ball, whatever was agreed
 _STAY_S = 0.6  # an attacker keeps its role unless another is so much faster at the ball
 _STAY_PRESSING_S = 0.3  # a second attacker stays until the team is so much sooner at the ball
@@ -95,9 +95,9 @@ def receiver(team: Sequence[Robot], view: View) -> Robot | None:
 def time_to_ball_s(robot: Robot, ball: Ball, course: ballistics.Course) -> float:
     """Returns the time in which a robot meets the ball; 0 for one that has it."""
     # A dribbling robot takes the ball along; a mate ahead of the ball would seem to meet it sooner.
-    return (
-        0.0 if math.dist(robot.place, ball.place) < _HAS_BALL_M else course.meet(robot.place, robot.velocity_m_s).time_s
-    )
+    if math.dist(robot.place, ball.place) < course.bodies.beside_m + _HAS_BALL_M:
+        return 0.0
+    return course.meet(robot.place, robot.velocity_m_s).time_s
 
 
 def opponents_time_s(view: View, course: ballistics.Course) -> float:

@@ -17,11 +17,11 @@ from procs.model.geometry import ahead, bearing_rad, clamp
 
 _AREA_M = 1.2  # a marking robot would stand in the penalty area with an opponent so near to it
 _MARK_M = 3.0  # a defender leaves its place for an opponent this near
-_HELD_M = 0.5  # an opponent this near to the ball has it
+_HELD_M = 0.14  # a robot with the ball so near to its body has it
 _FAST_BALL_M_S = 1.2  # the goalkeeper does not leave its line for a faster ball
 _KICK_OFF_RAD = 1.2  # nearly sideways: all mates are in the own half
 _BARRED_S = 4.0  # by then another robot has touched the ball of a set piece, or the game was interrupted
-_TOUCHED_M = 0.4  # a robot this near to the ball has touched it
+_TOUCHED_M = 0.04  # a robot with the ball so near to its body has touched it
 _GUARD_M = 1.2  # from the ball that it may not touch, a robot stands before the own goal
 _BENCH_M = 3.0  # from the goal lines
 _PASSED_S = 1.0  # after a pass the passer leaves the ball to the receiver
@@ -106,7 +106,7 @@ class Tactics:
             return _BARRED_S  # it held the ball in the last tick and does not any more
         if not game.free_play and self._fumbled(view) and self._taking:
             return _BARRED_S
-        return 0.0 if view.ball.is_near(view.others, _TOUCHED_M) else self._barred_s
+        return 0.0 if view.ball.is_near(view.others, view.bodies.beside_m + _TOUCHED_M) else self._barred_s
 
     def _fumbled(self, view: View) -> bool:
         """Returns whether the robot has bumped the ball of the set piece away; another may have done so before."""
@@ -228,7 +228,7 @@ class Tactics:
     def _go_for_ball(self, view: View) -> Order:
         ball = view.ball
         goal_rad = bearing_rad(ball.place, self.field.goal_centre(1.0))
-        rolls_free = all(math.dist(other.place, ball.place) > _HELD_M for other in view.opponents)
+        rolls_free = not ball.is_near(view.opponents, view.bodies.beside_m + _HELD_M)
         if rolls_free and comes_fast(ball, view.own):
             passed = bool(self.passing.said.passer)
             return Order("receive" if passed else "intercept", ball.place, goal_rad, "intercept")
@@ -242,7 +242,7 @@ class Tactics:
             if runner and _nearest_defender(view, runner, _MARK_M):
                 return Order("mark", runner.place, bearing_rad(runner.place, view.ball.place), "mark")
         place = job.place
-        if view.ball.is_near(field_players(view), _HELD_M):
+        if view.ball.is_near(field_players(view), view.bodies.beside_m + _HELD_M):
             place = formation.beside_shot(view.own.place, place, view.ball.place, self.field)
         return self._stand(view, place, job.role)
 

@@ -15,20 +15,20 @@ _PRESSED_M = 0.04  # by which the robot aims too near to the ball, to press it i
 _STAGING_M = 0.75  # behind the ball of a set piece, where the robot turns towards it
 _ALIGNED_RAD = 0.9  # a robot whose way to that ball differs more from the kick's direction comes from beside
 _FACING_RAD = 0.25  # the mouth faces the ball within this angle
-_WAITING_M = 0.5  # from the ball of a set piece until the mouth faces it
+_WAITING_M = 0.14  # from the body to the ball of a set piece until the mouth faces it
 _ENTRY_M_S = 0.25  # relative to the ball, which bounces off a faster mouth
 _NEAR_M = 1.0  # so near to the ball the robot gets slower ...
 _SOFT_1_S = 2.0  # ... by this speed for each metre, because it follows its commands late
 _GENTLE_1_S = 1.2  # the same at a set piece, which is not to be bumped away
 _SLOW_M_S = 0.5  # a faster ball has to be caught first
 _CONTEST_M = 1.2  # a rival so near to the ball leaves no time for that
-_HELD_M = 0.5  # an opponent this near to the ball has it
+_HELD_M = 0.14  # an opponent with the ball so near to its body has it
 _KEPT_M_S = 3.6  # a faster ball bounces off a standing mouth; the robot gives before it ...
 _GIVING_S, _GIVING_M, _GIVING_M_S = 0.5, 0.4, 0.7  # ... from so long before its arrival, so far and so fast
 _ON_LINE_M = 0.3  # a robot this near to its place on the ball's way has got there
 _PASSED_M_S = 1.2  # a pass is at least so fast ...
 _TOWARDS = 0.7  # ... and comes towards the robot: cosine of the angle
-_WITH_MATE_M = 0.42  # the passer has a ball so near to it
+_WITH_MATE_M = 0.06  # the passer has a ball so near to its body
 _SURE_S = 0.1  # the light barrier must see the ball so long
 
 
@@ -109,7 +109,8 @@ class GetBall(_Capture):
     """
 
     def _opponent_has_it(self, scene: Scene) -> bool:
-        return scene.view.ball.is_near(scene.view.opponents, _HELD_M)
+        view = scene.view
+        return view.ball.is_near(view.opponents, view.bodies.beside_m + _HELD_M)
 
     def _set_piece_from_beside(self, scene: Scene) -> bool:
         if not scene.set_piece:
@@ -134,8 +135,10 @@ class GetBall(_Capture):
         return _approach(scene, Drive(place, scene.heading_rad, avoid_ball=True))
 
     def _face(self, scene: Scene) -> Step:
-        facing_rad = bearing_rad(scene.view.own.place, scene.view.ball.place)
-        return _approach(scene, Drive(ahead(scene.view.ball.place, facing_rad, -_WAITING_M), facing_rad))
+        view = scene.view
+        facing_rad = bearing_rad(view.own.place, view.ball.place)
+        place = ahead(view.ball.place, facing_rad, -(view.bodies.beside_m + _WAITING_M))
+        return _approach(scene, Drive(place, facing_rad))
 
     STATES = (
         State(
@@ -178,7 +181,9 @@ class Receive(_Capture):
 
     def _pass_comes(self, scene: Scene) -> bool:
         view = scene.view
-        return comes_fast(view.ball, view.own) and not view.ball.is_near(view.mates, _WITH_MATE_M)
+        return comes_fast(view.ball, view.own) and not view.ball.is_near(
+            view.mates, view.bodies.beside_m + _WITH_MATE_M
+        )
 
     def _nothing_to_see(self, scene: Scene) -> bool:
         return not scene.view.ball.known and _passer(scene) is None

@@ -23,7 +23,7 @@ _COMES_OUT_M = 8.0  # a ball nearer to the goal draws the keeper out ...
 _OUT_1_M = 0.45  # ... by so much for each metre
 _FRONT = 1.6  # cosine of the ball's direction from the goal by this is the share for balls from the side
 _STEP_S = 0.05  # from one place on the ball's way that is looked at to the next
-_CAUGHT_M = 0.2  # from the keeper's middle to the ball's way: the ball hits the keeper's body
+_CAUGHT_M = 0.05  # a ball whose way crosses the keeper's body so deep hits it
 _CHANGE_M_S2, _SPEED_M_S = 2.8, 2.8  # of the keeper that does not stop at the ball's way
 _HOPELESS_S = 0.2  # by which a dive may be late: the ball's velocity is known roughly
 _BEYOND_M = 0.6  # a dive is aimed so far beyond the ball's way, and turns back after it
@@ -193,7 +193,7 @@ def best_save(scene: Scene) -> Save | None:
 
     Places behind the keeper's line are too late, and places beyond `_ON_GUARD_M` too far out.
     """
-    own, best = scene.view.own, None
+    own, best, caught_m = scene.view.own, None, scene.view.bodies.robot_radius_m - _CAUGHT_M
     start = ballistics.carried(own.place, own.velocity_m_s)
     for step in range(1, round(_LOOK_AHEAD_S / _STEP_S)):
         time_s = step * _STEP_S
@@ -203,7 +203,7 @@ def best_save(scene: Scene) -> Save | None:
             break
         if out_m > BEFORE_LINE_M + _ON_GUARD_M:
             continue
-        away_m = max(0.0, math.dist(start, place) - _CAUGHT_M)
+        away_m = max(0.0, math.dist(start, place) - caught_m)
         spare_s = time_s - _dive_s(away_m)
         if best is None or spare_s > best.spare_s:
             best = Save(place, spare_s, stops=ballistics.reach_s(away_m) <= time_s)

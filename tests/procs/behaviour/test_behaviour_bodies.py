@@ -11,7 +11,11 @@ from procs.behaviour import aim, ballistics, obstacles
 from procs.behaviour.agent import Agent
 from procs.behaviour.bodies import USUAL, Bodies
 from procs.behaviour.navigator import Navigator
+from procs.behaviour.passing import taken
+from procs.behaviour.roles import time_to_ball_s
 from procs.behaviour.skiller import Skiller
+from procs.behaviour.skills.getting import GetBall
+from procs.behaviour.skills.keeping import best_save
 from procs.behaviour.skills.searching import way_is_free
 from procs.behaviour.skills.skill import Obstacle, Scene, Sight
 from procs.behaviour.view import Ball
@@ -135,6 +139,30 @@ def test_ball_that_rolls_far_is_met_further_on() -> None:
     smooth = Bodies.of(ROBOT, BALL.model_copy(update={"rolling_m_s2": 0.1}))
     seen = view(OWN, Ball(known=True, place=Point(-4.0, 3.0), velocity_m_s=Point(2.5, 0.0)))
     assert ballistics.meet(seen._replace(bodies=smooth)).place.x_m > ballistics.meet(seen).place.x_m
+
+
+@pytest.mark.parametrize("radius_m", [0.1, 0.25, 0.35, 0.5])
+def test_robot_whose_body_touches_the_ball_has_it(radius_m: float) -> None:
+    sizes = Bodies.of(ROBOT.model_copy(update={"radius_m": radius_m}), BALL)
+    there = ball(3.0, 0.0)
+    for away_m, at_ball in ((sizes.held_ball_m, True), (sizes.beside_m + 0.03, True), (sizes.beside_m + 0.2, False)):
+        rival = robot("", 3.0 + away_m, 0.0)
+        seen = view(OWN, there, (robot("cyan3", -3.0, 0.0),), (rival,))._replace(bodies=sizes)
+        assert taken(seen) is at_ball
+        assert (time_to_ball_s(rival, there, ballistics.Course(there, sizes)) == 0.0) is at_ball
+        skill = GetBall()
+        skill.step(Scene(seen, there.place, 0.0))
+        assert (skill.state == "approach/contest") is at_ball
+
+
+def test_large_keeper_stops_a_ball_further_from_its_middle() -> None:
+    spare_s = []
+    for bodies in (USUAL, LARGE_ROBOT):
+        seen = view(robot("cyan1", -10.5, 0.6), Ball(True, Point(-6.0, 0.0), Point(-4.0, 0.0)))._replace(bodies=bodies)
+        save = best_save(Scene(seen, Point(-10.5, 0.0), 0.0))
+        assert save is not None
+        spare_s.append(save.spare_s)
+    assert spare_s[1] > spare_s[0] + 0.01
 
 
 def test_large_robot_keeps_off_walls_and_posts() -> None:
