@@ -1,6 +1,8 @@
 """Range of a rolling ball, speed of a kick, flight of a lob, and meeting points of ball and robot."""
 
 import math
+from collections.abc import Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
 from procs.behaviour.bodies import Bodies
@@ -142,6 +144,7 @@ class Course:
             rolling_s = min(time_s, stands_s)
             share = rolling_s - rolling_m_s2 * rolling_s * rolling_s / (2 * speed_m_s)
             self._stations.append((x_m + vx_m_s * share, y_m + vy_m_s * share, time_s, robot_m + contact_m))
+        self._is_fast = speed_m_s * _STEP_S > contact_m  # it passes a robot between two stations
 
     def meet(self, place: Point, velocity_m_s: Point = _STANDING) -> Meeting:
         """Returns the earliest meeting with a robot that is now at `place`.
@@ -152,12 +155,26 @@ class Course:
         if self._resting:
             away_m = math.hypot(own_x_m - self._ball.place.x_m, own_y_m - self._ball.place.y_m)
             return Meeting(self._ball.place, reach_s(away_m - self._contact_m))
-        for x_m, y_m, time_s, near_m in self._stations:
+        for x_m, y_m, time_s, near_m in self._stations_for(own_x_m, own_y_m) if self._is_fast else self._stations:
             if (own_x_m - x_m) ** 2 + (own_y_m - y_m) ** 2 <= near_m * near_m:
                 return Meeting(Point(x_m, y_m), time_s)
         x_m, y_m, time_s, _ = self._stations[-1]
         needed_s = reach_s(math.hypot(own_x_m - x_m, own_y_m - y_m) - self._contact_m)
         return Meeting(Point(x_m, y_m), max(time_s, needed_s))
+
+    def _stations_for(self, own_x_m: float, own_y_m: float) -> Iterator[tuple[float, float, float, float]]:
+        """Yields the stations, and between two of them the one that is nearest to a robot."""
+        yield self._stations[0]
+        for before, after in pairwise(self._stations):
+            dx_m, dy_m = after[0] - before[0], after[1] - before[1]
+            along_m2, way_m2 = (own_x_m - before[0]) * dx_m + (own_y_m - before[1]) * dy_m, dx_m**2 + dy_m**2
+            if 0.0 < along_m2 < way_m2:
+                share = along_m2 / way_m2
+                x_m, y_m, time_s, near_m = (
+                    start + share * (end - start) for start, end in zip(before, after, strict=True)
+                )
+                yield x_m, y_m, time_s, near_m
+            yield after
 
 
 def meet(view: View) -> Meeting:

@@ -77,3 +77,14 @@ def test_ball_that_outruns_the_robot_is_met_at_the_end() -> None:
     meeting = ballistics.meet(view(OWN, ball))
     assert meeting.place == ballistics.ball_after(ball, 4.0, USUAL)
     assert meeting.time_s > 4.0
+
+
+def test_ball_that_shoots_past_a_robot_is_met_from_every_place() -> None:
+    """Between two steps it once jumped over a robot, which was the attacker in every other tick."""
+    where = Ball(known=True, place=Point(0.0, 0.2), velocity_m_s=Point(9.4, 0.0))
+    course = ballistics.Course(where, USUAL)
+    for step in range(60):
+        place = Point(2.0 + 0.05 * step, 0.0)
+        meeting = course.meet(place)
+        assert meeting.time_s == pytest.approx(place.x_m / 9.4, abs=0.1)
+        assert math.dist(meeting.place, place) < 0.5
