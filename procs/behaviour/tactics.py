@@ -18,7 +18,10 @@ from procs.model.geometry import ahead, bearing_rad, clamp
 _AREA_M = 1.2  # a marking robot would stand in the penalty area with an opponent so near to it
 _MARK_M = 3.0  # a defender leaves its place for an opponent this near
 _HELD_M = 0.14  # a robot with the ball so near to its body has it
-_FAST_BALL_M_S = 1.2  # the goalkeeper does not leave its line for a faster ball
+_FAST_BALL_M_S, _FETCHED_M, _SOONER_S = 1.2, 0.3, 0.3
+"""The goalkeeper leaves its line for a slower ball, at most so far outside the penalty area, if no other robot reaches
+it so much sooner."""
+_GOES_ON_M_S, _GOES_ON_M, _GOES_ON_S = 0.5, 0.3, 0.4  # one on its way goes on while these hold with so much more
 _KICK_OFF_RAD = 1.2  # nearly sideways: all mates are in the own half
 _BARRED_S = 4.0  # by then another robot has touched the ball of a set piece, or the game was interrupted
 _TOUCHED_M = 0.04  # a robot with the ball so near to its body has touched it
@@ -58,6 +61,7 @@ class Tactics:
         self._barred_s = 0.0
         self._passed_s = 0.0
         self._held_s = math.inf  # since the ball was caught
+        self._fetches = False  # the goalkeeper has left its line for the ball
 
     @property
     def barred(self) -> bool:
@@ -137,7 +141,8 @@ class Tactics:
     def _keep(self, view: View, game: Game, holds_ball: bool) -> Order:
         if game.free_play and holds_ball:
             return self._agreed(self._play.relieve(view))
-        if game.free_play and view.ball.known and keeper_takes(view, self.field):
+        self._fetches = game.free_play and view.ball.known and keeper_takes(view, self.field, self._fetches)
+        if self._fetches:
             return self._go_for_ball(view)
         furthest_m = KEEPER_OUT_M if game.free_play else BEFORE_LINE_M
         place = Point(furthest_m - self.field.half_length_m, 0.0)
@@ -256,10 +261,16 @@ class Tactics:
         return Order("goto", place, bearing_rad(place, view.ball.place), intention)
 
 
-def keeper_takes(view: View, field: Field) -> bool:
-    """Returns whether the goalkeeper leaves its line: for a slow ball before its goal that it reaches first."""
+def keeper_takes(view: View, field: Field, goes_on: bool = False) -> bool:
+    """Returns whether the goalkeeper leaves its line: for a slow ball before its goal that it reaches first.
+
+    `goes_on`: it has left its line, and does not turn back for less than it would take to leave it.
+    """
     ball = view.ball
-    if ball.speed_m_s > _FAST_BALL_M_S or not field.in_penalty_area(*ball.place, -1.0, 0.3):
+    within_m = _FETCHED_M + _GOES_ON_M * goes_on
+    if ball.speed_m_s > _FAST_BALL_M_S + _GOES_ON_M_S * goes_on or not field.in_penalty_area(
+        *ball.place, -1.0, within_m
+    ):
         return False
     keepers = [robot for robot in (view.own, *view.mates) if robot.role == GOALKEEPER]
     if not keepers:
@@ -267,7 +278,8 @@ def keeper_takes(view: View, field: Field) -> bool:
     others = [*view.opponents, *(robot for robot in (view.own, *view.mates) if robot.role != GOALKEEPER)]
     course = ballistics.Course(ball, view.bodies)
     keeper_s = course.meet(keepers[0].place, keepers[0].velocity_m_s).time_s
-    return all(keeper_s < course.meet(other.place, other.velocity_m_s).time_s + 0.3 for other in others)
+    later_s = _SOONER_S + _GOES_ON_S * goes_on
+    return all(keeper_s < course.meet(other.place, other.velocity_m_s).time_s + later_s for other in others)
 
 
 def leave_field(view: View, field: Field) -> Order:

@@ -241,6 +241,27 @@ def test_keeper_keeps_goal_and_fetches_a_slow_ball_before_it() -> None:
     assert decide(view(keeper, ball(-10.2, 0.0), (), (far,)), role=GOALKEEPER, holds_ball=True).skill == "clear"
 
 
+@pytest.mark.parametrize(
+    ("places", "speeds_m_s", "rival"),
+    [
+        pytest.param((-8.5, -8.4), (0.0, 0.0), 0.0, id="the end of its room"),
+        pytest.param((-9.0, -9.0), (1.1, 1.3), 0.0, id="a ball that is nearly too fast"),
+        pytest.param((-8.8, -8.74), (0.0, 0.0), -7.55, id="a rival that is nearly as soon"),
+    ],
+)
+def test_keeper_on_its_way_to_the_ball_does_not_turn_back(
+    places: tuple[float, float], speeds_m_s: tuple[float, float], rival: float
+) -> None:
+    """Noise around a limit once sent it to the ball and back ten times a second."""
+    tactics, skills = Tactics(FIELD), []
+    for tick in range(40):
+        where = ball(places[tick % 2], 0.0, 0.0, speeds_m_s[tick % 2])
+        seen = view(robot("cyan1", -10.5, 0.0, role=GOALKEEPER), where, (), (robot("", rival, 0.0),))
+        skills.append(tactics.decide(seen, PLAY, job(GOALKEEPER), False, 0.05).skill)
+    assert skills[0] == "get_ball"
+    assert len(set(skills)) == 1
+
+
 @pytest.mark.parametrize("stopped", [True, False])
 def test_keeper_goes_home_around_their_set_piece(stopped: bool) -> None:
     """A robot becomes the keeper of its team anywhere on the field when the lower number is sent off."""
