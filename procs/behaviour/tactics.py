@@ -22,6 +22,7 @@ _FAST_BALL_M_S, _FETCHED_M, _SOONER_S = 1.2, 0.3, 0.3
 """The goalkeeper leaves its line for a slower ball, at most so far outside the penalty area, if no other robot reaches
 it so much sooner."""
 _GOES_ON_M_S, _GOES_ON_M, _GOES_ON_S = 0.5, 0.3, 0.4  # one on its way goes on while these hold with so much more
+_MEETS_ON = 0.7  # a robot that meets a fast ball goes on while it is still so fast, and comes so straight
 _KICK_OFF_RAD = 1.2  # nearly sideways: all mates are in the own half
 _BARRED_S = 4.0  # by then another robot has touched the ball of a set piece, or the game was interrupted
 _TOUCHED_M = 0.04  # a robot with the ball so near to its body has touched it
@@ -234,7 +235,8 @@ class Tactics:
         ball = view.ball
         goal_rad = bearing_rad(ball.place, self.field.goal_centre(1.0))
         rolls_free = not ball.is_near(view.opponents, view.bodies.beside_m + _HELD_M)
-        if rolls_free and comes_fast(ball, view.own):
+        share = _MEETS_ON if self._last.skill in ("receive", "intercept") else 1.0
+        if rolls_free and comes_fast(ball, view.own, share):
             passed = bool(self.passing.said.passer)
             return Order("receive" if passed else "intercept", ball.place, goal_rad, "intercept")
         return Order("get_ball", ball.place, goal_rad, "get ball")

@@ -207,11 +207,12 @@ class Receive(_Capture):
     )
 
 
-def comes_fast(ball: Ball, robot: Robot) -> bool:
-    """Returns whether the ball rolls fast, and towards the robot."""
+def comes_fast(ball: Ball, robot: Robot, share: float = 1.0) -> bool:
+    """Returns whether the ball rolls fast, and towards the robot; a smaller share of both will do if it is stated."""
     to_x_m, to_y_m = robot.place.x_m - ball.place.x_m, robot.place.y_m - ball.place.y_m
     towards = ball.velocity_m_s.x_m * to_x_m + ball.velocity_m_s.y_m * to_y_m
-    return ball.speed_m_s > _PASSED_M_S and towards > _TOWARDS * ball.speed_m_s * math.hypot(to_x_m, to_y_m)
+    straight = ball.speed_m_s * math.hypot(to_x_m, to_y_m)
+    return ball.speed_m_s > share * _PASSED_M_S and towards > share * _TOWARDS * straight
 
 
 def _passer(scene: Scene) -> Robot | None:

@@ -275,6 +275,15 @@ def test_keeper_goes_home_around_their_set_piece(stopped: bool) -> None:
     assert before_its_area.skill == "keep_goal"
 
 
+def test_robot_that_meets_a_ball_goes_on_when_it_gets_slower() -> None:
+    """Around the limit it once began the skill anew in every other tick."""
+    tactics, skills = Tactics(FIELD), []
+    for speed_m_s in (1.0, *(1.3, 1.1) * 10, 0.6):
+        seen = view(robot("cyan2", 0.0, 0.0), ball(3.0, 0.0, -speed_m_s, 0.0))
+        skills.append(tactics.decide(seen, PLAY, job(ATTACKER), False, 0.05).skill)
+    assert skills == ["get_ball", *["intercept"] * 20, "get_ball"]
+
+
 def test_attacker_leaves_a_ball_that_the_keeper_takes() -> None:
     keeper = robot("cyan1", -10.0, 0.0, role=GOALKEEPER)
     assert decide(view(robot("cyan2", -6.0, 0.0), ball(-9.5, 0.0), (keeper,))).skill == "goto"
