@@ -2,7 +2,8 @@
 
 import sys
 
-from fwk.cli.output import run_program, say
+from fwk.cli.output import say
+from fwk.program import run_program
 
 
 def main() -> None:

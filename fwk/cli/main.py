@@ -6,8 +6,9 @@ Typer and rich alone take longer to import than `fwk status` may take, so the th
 import sys
 from collections.abc import Callable
 
-from fwk.cli.output import imported, run_program, say
+from fwk.cli.output import say
 from fwk.display.table import Column, Table, terminal_width
+from fwk.program import imported, run_program
 
 HIDDEN = "__complete"
 """First word of the calls that the shells' completion makes."""

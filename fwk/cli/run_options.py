@@ -7,10 +7,10 @@ from typing import Annotated, Any
 import typer
 
 from fwk.cli.arguments import seconds
-from fwk.cli.output import notice
 from fwk.control import client, runs
 from fwk.control.client import ControlError, RefusedError
 from fwk.control.runs import RUN_VARIABLE
+from fwk.program import notice
 
 FAILED = 1
 BAD_INPUT = 2

@@ -29,8 +29,8 @@ def prepared(words: list[str]) -> Callable[[], int] | None:
     module, _, name = FUNCTIONS[words[0]].partition(":")
 
     def call() -> int:
-        from fwk.cli.output import complain
         from fwk.control.client import ControlError, RefusedError
+        from fwk.program import complain
 
         try:
             return int(getattr(import_module(module), name)(**values))

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from fwk.cli.arguments import Hosting
-from fwk.cli.output import notice, say, say_table
+from fwk.cli.output import say, say_table
 from fwk.cli.run_options import Json
 from fwk.clock import rate_word, turns_word
 from fwk.display.plan_overview import counted, overview, value_at
@@ -15,6 +15,7 @@ from fwk.model.errors import PlanError, Problem
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
 from fwk.model.plan_document import document_of
 from fwk.plan.load import LaunchOptions, load_plan
+from fwk.program import notice
 
 BAD_INPUT = 2
 

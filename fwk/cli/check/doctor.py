@@ -11,13 +11,13 @@ import typer
 from fwk.cli.arguments import Hosting
 from fwk.cli.check import machine_checks, network_checks, system_checks
 from fwk.cli.check.findings import Finding, Severity
-from fwk.cli.output import BAD_INPUT
 from fwk.cli.run_options import Json
 from fwk.model.errors import PlanError
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.run_section import default_public_url
+from fwk.program import BAD_INPUT
 
 _HOSTS, _CHANNELS = 100, 250  # of a large system, every component a process
 

@@ -9,12 +9,13 @@ from typing import Annotated, Any
 import typer
 
 from fwk.cli.look.channel_rates import channels_with_rates
-from fwk.cli.output import BAD_INPUT, say_table
+from fwk.cli.output import say_table
 from fwk.cli.run_options import Json, RunChoice, asking
 from fwk.clock import US_PER_S
 from fwk.control import runs
 from fwk.display.table import Column, Table
 from fwk.model.errors import hint
+from fwk.program import BAD_INPUT
 
 _ITEMS_SHOWN = 12
 _ROW_SHOWN = 4

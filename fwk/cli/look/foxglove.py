@@ -6,9 +6,10 @@ from typing import Annotated
 import typer
 
 from fwk.cli.look.public_messages import listening
-from fwk.cli.output import FAILED, say
+from fwk.cli.output import say
 from fwk.cli.run_options import Json, RunChoice
 from fwk.log_tools.export import INSTALL
+from fwk.program import FAILED
 
 PORT = 8765
 

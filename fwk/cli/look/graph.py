@@ -11,7 +11,6 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from fwk.cli.look.channel_rates import channels_with_rates
-from fwk.cli.output import BAD_INPUT, notice
 from fwk.cli.run_options import Json, RunChoice, ask, asking
 from fwk.display.graph import Graph, channel_rows, graph_of
 from fwk.display.graph import graph as made
@@ -20,6 +19,7 @@ from fwk.display.plan_overview import counted
 from fwk.model.errors import PlanError, hint
 from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
+from fwk.program import BAD_INPUT, notice
 
 
 class Form(Enum):

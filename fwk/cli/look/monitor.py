@@ -10,13 +10,14 @@ import typer
 
 from fwk.cli.arguments import folder
 from fwk.cli.look.public_messages import listening
-from fwk.cli.output import BAD_INPUT, FAILED, say
+from fwk.cli.output import say
 from fwk.cli.recordings.find_log import failing, find_log_with_types
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import Json, RunChoice
 from fwk.lcm.event_log import LogReader
 from fwk.model.errors import hint
 from fwk.monitor.script import Script, ScriptError, templates
+from fwk.program import BAD_INPUT, FAILED
 
 
 def monitor(

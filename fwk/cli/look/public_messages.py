@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import typer
 
 from fwk.bus.public import PublicBus
-from fwk.cli.output import FAILED
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import asking
 from fwk.clock import US_PER_S, monotonic_us
@@ -16,6 +15,7 @@ from fwk.control import runs
 from fwk.control.client import Client, ControlError
 from fwk.lcm.messages import MessageError
 from fwk.lcm.type_registry import header_of
+from fwk.program import FAILED
 
 _LOOK_US = US_PER_S
 

@@ -13,13 +13,14 @@ import typer
 
 from fwk.cli.arguments import folder, new_file
 from fwk.cli.look.public_messages import listening
-from fwk.cli.output import BAD_INPUT, FAILED, say
+from fwk.cli.output import say
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.progress import progress_of
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import Json, RunChoice
 from fwk.clock import sleep_s
 from fwk.lcm.log_parts import uncompressed_name
+from fwk.program import BAD_INPUT, FAILED
 from fwk.recording.compare import plan_in
 
 if TYPE_CHECKING:

@@ -8,8 +8,9 @@ from typing import Annotated
 
 import typer
 
-from fwk.cli.output import BAD_INPUT, complain, say
+from fwk.cli.output import say
 from fwk.plan.files.launch_file import shown
+from fwk.program import BAD_INPUT, complain
 from fwk.scaffold.changes import Change, ScaffoldError, pending, refuse_overwriting, write
 
 DryRun = Annotated[bool, typer.Option("--dry-run", help="print what would be written, write nothing")]

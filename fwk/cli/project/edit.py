@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fwk.cli.output import notice, say
+from fwk.cli.output import say
 from fwk.cli.project.changing import explaining
+from fwk.program import notice
 from fwk.scaffold.changes import Change, ScaffoldError, write
 from fwk.scaffold.project import Project, project_at
 from fwk.scaffold.types import check_port_types

@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-from fwk.cli.output import BAD_INPUT, FAILED
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.run_options import Json
+from fwk.program import BAD_INPUT, FAILED
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.testing.bisect import BisectError, Commit, Found, repository_of
 from fwk.testing.bisect import bisect as search

@@ -8,9 +8,9 @@ from typing import Any
 
 import typer
 
-from fwk.cli.output import FAILED, notice
 from fwk.cli.run.run_directory import make_run_dir
 from fwk.cli.run.run_files import write_run_files
+from fwk.program import FAILED, notice
 from fwk.recording.difference import Difference
 from fwk.recording.differing import differing, lines_of
 from fwk.recording.replay.branch import Branch

@@ -16,13 +16,13 @@ from typing import Annotated, Any, cast
 import typer
 
 from fwk.cli.arguments import seconds
-from fwk.cli.output import BAD_INPUT, FAILED
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.model.errors import PlanError
 from fwk.model.plan import Plan
 from fwk.plan.classes import find_object
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.what_ran import imported_modules
+from fwk.program import BAD_INPUT, FAILED
 from fwk.testing.campaign import Campaign, Evaluation, FolderError, listed
 from fwk.testing.executors import CampaignError, executor_of
 

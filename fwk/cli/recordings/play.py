@@ -11,7 +11,6 @@ import typer
 
 from fwk.bus.public import PublicBus
 from fwk.cli.arguments import folder, speed
-from fwk.cli.output import BAD_INPUT, FAILED, INTERRUPTED
 from fwk.cli.recordings.find_log import failing, find_log_with_types
 from fwk.cli.recordings.play_controls import Controls
 from fwk.cli.recordings.user_folders import use_folders
@@ -23,6 +22,7 @@ from fwk.gateway.pacing import PacedPublisher
 from fwk.lcm.event_log import Event
 from fwk.model.plan import Plan
 from fwk.model.public_url import UrlError
+from fwk.program import BAD_INPUT, FAILED, INTERRUPTED
 from fwk.recording.play.channels import Channels
 from fwk.recording.play.player import Player
 from fwk.recording.play.plugins import PluginError, Plugins

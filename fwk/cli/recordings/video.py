@@ -7,11 +7,11 @@ from typing import Annotated
 import typer
 
 from fwk.cli.arguments import folder, video_file
-from fwk.cli.output import BAD_INPUT, INTERRUPTED
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run.rendering import render, report
 from fwk.cli.run_options import Json
+from fwk.program import BAD_INPUT, INTERRUPTED
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.video import VideoError, drawing
 

@@ -15,7 +15,6 @@ from fwk.cli.arguments import Hosting, SeveralNames, new_file, record_parts, sec
 from fwk.cli.arguments import speed as parse_speed
 from fwk.cli.commands import VersionFlag
 from fwk.cli.examples import epilog
-from fwk.cli.output import BAD_INPUT, imported, notice
 from fwk.cli.run.console import beside, check_library
 from fwk.cli.run.detach import detach as detach_run
 from fwk.cli.run.free_ports import on_free_ports
@@ -35,6 +34,7 @@ from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 from fwk.model.signals import ignore
 from fwk.plan.load import LaunchOptions, load_plan
+from fwk.program import BAD_INPUT, imported, notice
 
 RUN_BROKEN = 1
 RECORDING = "log.lcm"

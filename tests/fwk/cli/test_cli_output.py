@@ -1,6 +1,5 @@
 """Commands end with a sentence when the machine fails them: closed or full outputs, no folder, no descriptors."""
 
-import errno
 import os
 import resource
 import signal
@@ -64,21 +63,6 @@ def test_a_deleted_folder_is_named(tmp_path: Path, module: str) -> None:
     assert done.stderr.startswith("error: the current folder does not exist any more")
 
 
-def test_too_few_descriptors_are_a_sentence(tmp_path: Path) -> None:
-    from fwk.cli.output import run_program
-
-    def fail() -> int:
-        raise OSError(errno.EMFILE, "Too many open files")
-
-    before = signal.getsignal(signal.SIGINT)
-    try:
-        with pytest.raises(SystemExit) as ended:
-            run_program(fail)
-    finally:
-        signal.signal(signal.SIGINT, before)
-    assert ended.value.code == 2
-
-
 @pytest.mark.slow
 def test_a_run_with_few_descriptors_is_refused(tmp_path: Path, ports: PortBlock) -> None:
     def limit() -> None:
@@ -97,7 +81,6 @@ def test_a_run_with_few_descriptors_is_refused(tmp_path: Path, ports: PortBlock)
 def test_ctrl_c_during_imports_ends_it_tidily(module: str, code: int) -> None:
     program = (
         "import builtins, os, signal, sys\n"
-        "from fwk.cli import output\n"
         f"from {module} import main\n"
         "real = builtins.__import__\n"
         "def slow(name, *rest):\n"
