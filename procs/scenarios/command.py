@@ -2,7 +2,6 @@
 
 import argparse
 import os
-import re
 import sys
 import traceback
 from collections.abc import Mapping, Sequence
@@ -12,12 +11,11 @@ from pathlib import Path
 
 from fwk.testing import ExpressionError, Verdict
 from fwk.testing.executors import executor_of
+from fwk.testing.seeds import seeds_of
 from procs.evaluation.table import as_text
 from procs.scenarios.evaluation import broken_in, rows_of
 from procs.scenarios.file import BOOK, Scenario, ScenarioError
 from procs.scenarios.scenario import launch_file_of, outcome, read
-
-_MOST = 100_000  # seeds
 
 
 def main() -> int:
@@ -108,11 +106,10 @@ def _seed(text: str) -> int:
 
 
 def _seeds(text: str) -> range:
-    words = re.fullmatch(r"(\d{1,18})\.\.(\d{1,18})", text, re.ASCII)
-    first, last = (int(words[1]), int(words[2])) if words else (1, 0)
-    if not 0 <= last - first < _MOST:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a range of {_MOST} seeds at most; use such as 1..20")
-    return range(first, last + 1)
+    try:
+        return seeds_of(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def _said(error: ScenarioError | OSError, file: Path) -> str:

@@ -2,7 +2,6 @@
 
 import hashlib
 import os
-import re
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -25,8 +24,8 @@ from fwk.plan.what_ran import imported_modules
 from fwk.program import BAD_INPUT, FAILED
 from fwk.testing.campaign import Campaign, Evaluation, FolderError, listed
 from fwk.testing.executors import CampaignError, executor_of
+from fwk.testing.seeds import seeds_of
 
-_MOST = 100_000  # seeds: what is known of each is kept in memory
 _RUN_S = 25.0
 
 
@@ -88,7 +87,7 @@ def eval(  # noqa: A001 - the name of the command
     if not plan.evaluation:
         raise _bad_input(f"{file} names no 'evaluation: module:function'")
     use_folders(plan.folders)
-    numbers, folder, modules = _numbers(seeds), out or Path(f"eval-{plan.name}"), _modules(plan)
+    numbers, folder, modules = _seeds(seeds), out or Path(f"eval-{plan.name}"), _modules(plan)
     if cause := _refusal(plan, sets or (), time_s):
         raise _bad_input(cause)
     time_s = _RUN_S if time_s is None else time_s
@@ -248,16 +247,13 @@ def _short(value: Any) -> str:
     return hashlib.sha256(repr(value).encode()).hexdigest()[:16]
 
 
-def _numbers(text: str) -> range:
+def _seeds(text: str) -> range:
     """Returns the seeds `1..4`, or the one `7`.
 
     Raises:
         BadParameter: the text is neither.
     """
-    words = re.fullmatch(r"(\d{1,30})(?:\.\.(\d{1,30}))?", text.strip(), re.ASCII)
-    first, last = (int(words[1]), int(words[2] or words[1])) if words else (1, 0)
-    if first > last:
-        raise typer.BadParameter(f"--seeds: '{text}' is not a range of seeds; use 1..20, or 7")
-    if last - first >= _MOST:
-        raise typer.BadParameter(f"--seeds: '{text}' is too many; use {_MOST:,} seeds at most")
-    return range(first, last + 1)
+    try:
+        return seeds_of(text)
+    except ValueError as error:
+        raise typer.BadParameter(f"--seeds: {error}") from error
