@@ -19,14 +19,6 @@ from tests.fwk.cli.cli_eval_parts import measured
 from tests.fwk.cli.cli_eval_tools import LAUNCH, Queue, evaluated
 
 
-@pytest.fixture
-def launch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    file = tmp_path / "it.yaml"
-    file.write_text(LAUNCH)
-    return file
-
-
 def test_each_seed_is_measured_and_reported(launch: Path) -> None:
     assert evaluated(str(launch), "--seeds", "1..3", "--time", "2", "--jobs", "1")[:2] == (0, "1 2 3\n")
     kept = json.loads((launch.parent / "eval-it" / "seed-2.json").read_text())

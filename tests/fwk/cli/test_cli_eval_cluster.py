@@ -20,15 +20,7 @@ from fwk.testing import executors
 from fwk.testing.campaign import Campaign, Evaluation
 from fwk.testing.executors import CampaignError, executor_of
 from tests.fwk.cli.cli_eval_parts import measured
-from tests.fwk.cli.cli_eval_tools import LAUNCH, Queue, evaluated
-
-
-@pytest.fixture
-def launch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    file = tmp_path / "it.yaml"
-    file.write_text(LAUNCH)
-    return file
+from tests.fwk.cli.cli_eval_tools import Queue, evaluated
 
 
 def test_lost_cluster_is_named(tmp_path: Path) -> None:

@@ -16,15 +16,6 @@ from tests.fwk.cli.cli_eval_tools import LAUNCH, evaluated
 from tests.harness.commands import BIN
 from tests.harness.terminals import Child
 
-
-@pytest.fixture
-def launch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    file = tmp_path / "it.yaml"
-    file.write_text(LAUNCH)
-    return file
-
-
 KILLED = """
 import os, signal
 from fwk.testing.executors import executor_of
