@@ -1,9 +1,10 @@
 """Commands by hand: the referee's decisions, made by a person or by a RefBox, with the names of the RefBox."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 from procs.model.field import Point
 from procs.model.game_states import State
+from procs.model.right_name import right_name
 from procs.model.robot import PLAYERS
 from procs.model.teams import Team, team_number
 from procs.referee import halves, restarts
@@ -35,11 +36,37 @@ COMMANDS = (*SET_PIECES, *GOALS, *CARDS, *REPAIRS, *HALVES, *PLAIN)
 """All commands."""
 
 
+def mistake_in(name: str, team: str, robot: str, robots: Collection[str], names: Names = _USUAL) -> str:
+    """Returns why a command is impossible whatever the state of the match, or an empty text.
+
+    Args:
+        name: name of the command.
+        team: its team, empty for none.
+        robot: namespace of its robot, empty for none.
+        robots: namespaces of the robots that there are.
+        names: the players' names.
+    """
+    if name not in COMMANDS:
+        return f"no command '{name}'; {right_name(name, COMMANDS)}"
+    if team not in TEAMS:
+        return f"no team '{team}'; {right_name(team, filter(None, TEAMS))}"
+    if name in (*SET_PIECES, *GOALS) and not team:
+        return f"'{name}' needs a team: cyan or magenta"
+    if name in (*CARDS, *REPAIRS):
+        there = ", ".join(robots) or "none"
+        if not team and not robot:
+            return f"'{name}' needs a team or a robot; there are {there}"
+        if robot and robot not in robots:
+            return f"no robot '{robot}'; there are {there}"
+        if robot and team and team_number(names.of_player(robot)) is not TEAMS[team]:
+            return f"{robot} does not play for {team}"
+    return ""
+
+
 def carry_out(match: Match, sight: Sight, name: str, team: str = "", robot: str = "", names: Names = _USUAL) -> str:
     """Carries out a command; returns why it is impossible, or an empty text. `robot` is a namespace."""
-    if team not in TEAMS:
-        return f"no team '{team}'; there are cyan, magenta"
-    refused = why_not(match, name, TEAMS[team])
+    refused = mistake_in(name, team, robot, names.namespaces(sight.robots), names)
+    refused = refused or why_not(match, name, TEAMS[team])
     if refused:
         return refused
     if name in SET_PIECES:
@@ -55,9 +82,7 @@ def carry_out(match: Match, sight: Sight, name: str, team: str = "", robot: str 
 
 
 def _set_piece(match: Match, sight: Sight, name: str, team: Team) -> str:
-    state, half = SET_PIECES[name], begun_by(match, name)
-    if not team:
-        return f"a {state.words} needs a team: cyan or magenta"
+    half = begun_by(match, name)
     if half:
         match.begin_half(half, Reason.BY_HAND, team)
         return ""
@@ -78,13 +103,11 @@ def _set_piece(match: Match, sight: Sight, name: str, team: Team) -> str:
             if match.at_rest or match.shootout.shooter is team:
                 return ""
         match.shootout.shooter = team
-    match.interrupt(made[state](), Reason.BY_HAND)
+    match.interrupt(made[SET_PIECES[name]](), Reason.BY_HAND)
     return ""
 
 
 def _goal(match: Match, team: Team, more: bool) -> str:
-    if not team:
-        return "a goal needs a team: cyan or magenta"
     if more and match.at_rest:
         match.goal(team)
     elif more and match.shootout:
@@ -102,16 +125,9 @@ def _goal(match: Match, team: Team, more: bool) -> str:
 
 
 def _robot(match: Match, sight: Sight, name: str, team: Team, namespace: str, names: Names) -> str:
-    there = ", ".join(names.namespaces(sight.robots)) or "none"
-    if not namespace and not team:
-        return f"a {name.replace('_', ' ')} needs a team or a robot; there are {there}"
     robot = names.of_player(namespace) if namespace else _chosen(match, sight, name, team)
-    if not namespace and not robot:
+    if not robot:
         return f"no robot of {team.name.lower()} is on the field"
-    if namespace and namespace not in names.namespaces(sight.robots):
-        return f"no robot '{namespace}'; there are {there}"
-    if team and team_number(robot) is not team:
-        return f"{namespace} does not play for {team.name.lower()}"
     if name in CARDS:
         match.card(robot, CARDS[name])
     else:
@@ -150,6 +166,4 @@ def _simple(match: Match, sight: Sight, name: str) -> str:
             match.end_match()
         case "reset":
             match.begin_match()
-        case _:
-            return f"no command '{name}'; there are {', '.join(COMMANDS)}"
     return ""

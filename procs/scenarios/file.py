@@ -21,6 +21,7 @@ from procs.scenarios.mistakes import (
     texts_of,
 )
 from procs.simulation.physics.start_places import three_numbers
+from procs.simulation.simulator import SimulatorConfig
 
 BOOK = Path(__file__).parent / "book"
 """Folder of the scenarios that come with the robots."""
@@ -99,17 +100,17 @@ def parsed(text: str, where: str, further: Callable[[Scenario], Iterable[str]] =
     except ValidationError as error:
         found = texts_of(error, known=list(Scenario.model_fields))
     else:
-        found = [*_mistakes(scenario), *further(scenario)]
+        config = simulator_settings(scenario.settings)
+        found = [*_mistakes(scenario, config), *further(scenario)]
         if not scenario.conditions:
             found.append("nothing has to happen; give eventually, in_order, always or at_end")
-        found = found or list(place_mistakes(scenario.places, simulator_settings(scenario.settings)))
+        found = found or list(place_mistakes(scenario.places, config))
     if found:
         raise ScenarioError("\n".join(f"{where}: {each}" for each in found))
     return scenario
 
 
-def _mistakes(scenario: Scenario) -> list[str]:
-    config = simulator_settings(scenario.settings)
+def _mistakes(scenario: Scenario, config: SimulatorConfig) -> list[str]:
     found = list(robot_mistakes([*scenario.robots, *scenario.seeing], scenario.dummies, scenario.places))
     found += team_mistakes([*scenario.robots, *scenario.seeing], scenario.settings)
     found += ball_mistakes(scenario.ball, config.field)

@@ -1,19 +1,19 @@
 """Mistakes in scenario files, in words that say where they are and what would be right."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any
 
 import yaml
 from pydantic import BaseModel, ValidationError
 
-from lcmtypes.soccer import place_ball_t, referee_command_t
+from lcmtypes.soccer import place_ball_t
 from procs.model.field import Field, Point
+from procs.model.right_name import right_name
 from procs.model.robot import PLAYERS, player_of
-from procs.referee.orders import CARDS, COMMANDS, GOALS, TEAMS
-from procs.referee.reasons import REPAIRS
-from procs.referee.refusals import SET_PIECES
+from procs.referee.names import Names
+from procs.referee.orders import mistake_in
 from procs.scenarios.action import Action, field_mistakes
 from procs.simulation.field_crew import ball_mistake, robot_mistake
 from procs.simulation.physics.room import Room
@@ -107,32 +107,14 @@ def command_mistakes(
 def _refusals(action: Action, everyone: Sequence[str], config: SimulatorConfig) -> Iterator[str]:
     command = action.message
     robot = command.robot if "robot" in command.__slots__ else ""
-    if action.kind == "referee":
-        yield from _referee_refusals(command, config)
-        if not robot:
-            return
-    if "robot" in command.__slots__ and robot not in everyone:
+    if "robot" in command.__slots__ and robot not in everyone and (robot or action.kind != "referee"):
         yield f"no robot '{robot}'; {right_name(robot, everyone)}"
+    elif action.kind == "referee":
+        yield mistake_in(command.name, command.team, robot, everyone, Names(config.players))
     elif action.kind == "place_robot":
         yield robot_mistake(command, everyone, config.field)
     elif action.kind == "place_ball":
         yield ball_mistake(command, config.field)
-
-
-def _referee_refusals(command: referee_command_t, config: SimulatorConfig) -> Iterator[str]:
-    name, team, robot = command.name, command.team, command.robot
-    if name not in COMMANDS:
-        yield f"no command '{name}'; {right_name(name, COMMANDS)}"
-    elif name in (*SET_PIECES, *GOALS) and not team:
-        yield f"'{name}' needs a team: cyan or magenta"
-    elif name in (*CARDS, *REPAIRS) and not (team or robot):
-        yield f"'{name}' needs a team or a robot"
-    elif name in (*CARDS, *REPAIRS) and team in TEAMS and team and robot:
-        player = player_of(robot, config.players)
-        if player and player.team != team:
-            yield f"{robot} does not play for {team}"
-    if team not in TEAMS:
-        yield f"no team '{team}'; {right_name(team, [each for each in TEAMS if each])}"
 
 
 def simulator_settings(settings: Mapping[str, Mapping[str, Any]]) -> SimulatorConfig:
@@ -166,13 +148,6 @@ def settings_mistakes(
             model.model_validate(values)
         except ValidationError as error:
             yield from texts_of(error, name, list(model.model_fields))
-
-
-def right_name(word: str, known: Iterable[str]) -> str:
-    """Returns what would be right in the place of an unknown word: the nearest known word, or all of them."""
-    names = list(known)
-    near = get_close_matches(word, names, 1)
-    return f"did you mean '{near[0]}'?" if near else f"there are {', '.join(names) or 'none'}"
 
 
 def _unknown(key: str, known: Sequence[str]) -> str:

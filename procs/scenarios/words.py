@@ -9,8 +9,8 @@ from fwk.testing import reads_messages
 from lcmtypes.soccer import game_state_t
 from procs.model.events import Kind
 from procs.model.field import Point
+from procs.model.right_name import right_name
 from procs.referee.reasons import Reason
-from procs.scenarios.mistakes import right_name
 
 Newest = Callable[[str], Any]
 

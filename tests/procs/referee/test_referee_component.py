@@ -121,11 +121,11 @@ def test_stop_by_hand_holds_the_game_until_start() -> None:
 @pytest.mark.parametrize(
     ("asked", "reason"),
     [
-        ({"name": "freekick"}, "a free kick needs a team: cyan or magenta"),
+        ({"name": "freekick"}, "'freekick' needs a team: cyan or magenta"),
         ({"name": "freekick", "team": "red"}, "no team 'red'; there are cyan, magenta"),
         ({"name": "subgoal", "team": "cyan"}, "cyan has no goal to take back"),
         ({"name": "yellow_card", "robot": "cyan9"}, "no robot 'cyan9'; there are none"),
-        ({"name": "red_card"}, "a red card needs a team or a robot; there are none"),
+        ({"name": "red_card"}, "'red_card' needs a team or a robot; there are none"),
         ({"name": "red_card", "team": "cyan"}, "no robot of cyan is on the field"),
         ({"name": "start"}, "nothing to start: the game runs, or has a break"),
     ],
@@ -138,11 +138,12 @@ def test_impossible_command_by_hand(asked: dict[str, str], reason: str) -> None:
     assert (answer.state, answer.reason) == (answer_t.REJECTED, reason)
 
 
-def test_unknown_command_lists_the_known_ones() -> None:
+@pytest.mark.parametrize(("name", "right"), [("kick", "did you mean 'kickoff'?"), ("xyz", "there are kickoff, ")])
+def test_unknown_command_lists_the_known_ones(name: str, right: str) -> None:
     bench = playing()
-    bench.port("referee_command").put(name="kick")
+    bench.port("referee_command").put(name=name)
     bench.iterate()
-    assert bench.port("referee_command").sent[-1].answer.reason.startswith("no command 'kick'; there are kickoff, ")
+    assert bench.port("referee_command").sent[-1].answer.reason.startswith(f"no command '{name}'; {right}")
 
 
 def test_led_by_hand_the_referee_calls_nothing() -> None:
