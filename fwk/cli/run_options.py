@@ -10,10 +10,7 @@ from fwk.cli.arguments import seconds
 from fwk.control import client, runs
 from fwk.control.client import ControlError, RefusedError
 from fwk.control.runs import RUN_VARIABLE
-from fwk.program import notice
-
-FAILED = 1
-BAD_INPUT = 2
+from fwk.program import BAD_INPUT, FAILED, notice
 
 RunChoice = Annotated[
     str | None,

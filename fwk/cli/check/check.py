@@ -7,6 +7,7 @@ import typer
 
 from fwk.cli.arguments import Hosting
 from fwk.cli.output import say, say_table
+from fwk.cli.plan_options import ProcessHosting, Sets
 from fwk.cli.run_options import Json
 from fwk.clock import rate_word, turns_word
 from fwk.display.plan_overview import counted, overview, value_at
@@ -15,9 +16,7 @@ from fwk.model.errors import PlanError, Problem
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
 from fwk.model.plan_document import document_of
 from fwk.plan.load import LaunchOptions, load_plan
-from fwk.program import notice
-
-BAD_INPUT = 2
+from fwk.program import BAD_INPUT, notice
 
 
 def check(
@@ -28,12 +27,8 @@ def check(
     settings: Annotated[
         bool, typer.Option("--settings", help="list all settings with their values and origins")
     ] = False,
-    sets: Annotated[
-        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="override a setting; repeatable")
-    ] = None,
-    hosting: Annotated[
-        Hosting, typer.Option(help="one process a component, one a namespace, or one for all")
-    ] = Hosting.PROCESS,
+    sets: Sets = None,
+    hosting: ProcessHosting = Hosting.PROCESS,
     only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="only these components; repeatable")] = None,
     without: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="all but these components; repeatable")

@@ -11,10 +11,11 @@ from fwk.cli.look import picture_output
 from fwk.cli.look.picture_output import Pixels, fail
 from fwk.cli.look.recorded_pictures import Recorded
 from fwk.cli.recordings.find_log import failing, find_log
-from fwk.cli.run_options import BAD_INPUT, Json, RunChoice, ask, asking
+from fwk.cli.run_options import Json, RunChoice, ask, asking
 from fwk.component.images import Ring
 from fwk.control import runs
 from fwk.model.errors import hint
+from fwk.program import BAD_INPUT
 
 FRAME_TYPE = "core.frame_t"
 

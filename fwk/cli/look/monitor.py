@@ -8,10 +8,10 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from fwk.cli.arguments import folder
 from fwk.cli.look.public_messages import listening
 from fwk.cli.output import say
 from fwk.cli.recordings.find_log import failing, find_log_with_types
+from fwk.cli.recordings.log_options import Types
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import Json, RunChoice
 from fwk.lcm.event_log import LogReader
@@ -29,9 +29,7 @@ def monitor(
         str | None, typer.Option(metavar="NAME", help="print a script to start from; 'list' names all of them")
     ] = None,
     count: Annotated[int | None, typer.Option("--count", min=1, metavar="N", help="end after N messages")] = None,
-    types: Annotated[
-        Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ defines the messages")
-    ] = Path(),
+    types: Types = Path(),
     chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:

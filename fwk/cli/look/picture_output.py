@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.style import Style
 from rich.text import Text
 
-from fwk.cli.run_options import BAD_INPUT, FAILED
+from fwk.program import BAD_INPUT, FAILED
 
 Pixels = NDArray[np.uint8]
 SUFFIXES = (".bmp", ".jpeg", ".jpg", ".png", ".ppm", ".tif", ".tiff", ".webp")

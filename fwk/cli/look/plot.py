@@ -14,13 +14,14 @@ from fwk.cli.output import say
 from fwk.cli.recordings.find_log import failing, find_log_with_types
 from fwk.cli.recordings.log_options import Force, Types
 from fwk.cli.recordings.progress import progress_of
-from fwk.cli.run_options import BAD_INPUT, Json, RunChoice
+from fwk.cli.run_options import Json, RunChoice
 from fwk.clock import US_PER_S, monotonic_us
 from fwk.display.table import has_colour, terminal_width
 from fwk.lcm.event_log import LogError
 from fwk.lcm.type_registry import decoded, types_of, use_types_of
 from fwk.log_tools.new_file import new_file as complete_file
 from fwk.log_tools.series import SeriesOf, series_in
+from fwk.program import BAD_INPUT
 
 _FORMATS = ("png", "svg")
 _COLUMNS, _ROWS = 100, 24

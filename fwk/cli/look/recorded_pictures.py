@@ -6,10 +6,10 @@ from typing import Any
 
 from fwk.cli.look import picture_output
 from fwk.cli.look.picture_output import Pixels, fail
-from fwk.cli.run_options import BAD_INPUT
 from fwk.clock import US_PER_S
 from fwk.model.errors import hint
 from fwk.model.plan import NOBODY
+from fwk.program import BAD_INPUT
 from fwk.recording.pictures import RecordedPicture, pictures_in
 from fwk.recording.replay.recording import Recording, RecordingError
 

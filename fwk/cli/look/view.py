@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from fwk.cli.arguments import folder, new_file
+from fwk.cli.arguments import new_file
 from fwk.cli.look.public_messages import listening
 from fwk.cli.output import say
 from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.recordings.log_options import Channels, Types
 from fwk.cli.recordings.progress import progress_of
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import Json, RunChoice
@@ -54,17 +55,12 @@ def view(
     port: Annotated[
         int, typer.Option(min=1, max=65534, metavar="N", help="port of the stream; the web page has the next one")
     ] = PORT,
-    channels: Annotated[
-        list[str] | None,
-        typer.Option("--channels", metavar="PATTERN", help="only these channels, such as 'cyan1/*'; repeatable"),
-    ] = None,
+    channels: Channels = None,
     views: Annotated[
         list[str] | None,
         typer.Option("--view", metavar="MODULE", help="a further module with views of the project; repeatable"),
     ] = None,
-    types: Annotated[
-        Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ defines the messages")
-    ] = Path(),
+    types: Types = Path(),
     chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:

@@ -9,7 +9,7 @@ import typer
 from fwk.cli.run.console import MISSING, PORT, can_serve
 from fwk.cli.run.run_directory import RUNS, run_dirs
 from fwk.cli.run.run_record import read_record
-from fwk.cli.run_options import BAD_INPUT, FAILED
+from fwk.program import BAD_INPUT, FAILED
 
 _HOST_NAME = re.compile(r"[A-Za-z0-9]([A-Za-z0-9.-]*[A-Za-z0-9])?")
 _EVERY = ("0.0.0.0", "::")

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from fwk.cli.arguments import folder
 from fwk.cli.recordings.find_log import failing, located
+from fwk.cli.recordings.log_options import Types
 from fwk.cli.recordings.user_folders import use_types_of_run
 from fwk.cli.run_options import Json
 from fwk.model.plan import Plan
@@ -26,9 +26,7 @@ def compare(
     common: Annotated[
         bool, typer.Option("--common", help="only sequence numbers that both logs reach; for logs of different length")
     ] = False,
-    types: Annotated[
-        Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ defines the messages")
-    ] = Path(),
+    types: Types = Path(),
     as_json: Json = False,
 ) -> None:
     """Compares two logs on every channel outside fwk/; names the first difference and all components that differ.

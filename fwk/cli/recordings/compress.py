@@ -10,9 +10,10 @@ import typer
 from fwk.cli.output import say
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.progress import progress_of
-from fwk.cli.run_options import BAD_INPUT, Json
+from fwk.cli.run_options import Json
 from fwk.lcm.log_file import LogError, is_compressed
 from fwk.lcm.log_parts import parts_of
+from fwk.program import BAD_INPUT
 from fwk.recording.part_compressor import compress_part
 
 

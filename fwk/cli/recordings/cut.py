@@ -23,9 +23,10 @@ from fwk.cli.recordings.log_options import (
     text_of_damage,
 )
 from fwk.cli.recordings.progress import progress_of
-from fwk.cli.run_options import BAD_INPUT, Json
+from fwk.cli.run_options import Json
 from fwk.log_tools.cut import cut as cut_log
 from fwk.log_tools.selection import Selection
+from fwk.program import BAD_INPUT
 
 
 def cut(

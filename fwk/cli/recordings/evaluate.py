@@ -15,6 +15,7 @@ from typing import Annotated, Any, cast
 import typer
 
 from fwk.cli.arguments import seconds
+from fwk.cli.plan_options import Sets
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.model.errors import PlanError
 from fwk.model.plan import Plan
@@ -57,9 +58,7 @@ def eval(  # noqa: A001 - the name of the command
         ),
     ] = None,
     cluster: Annotated[str, typer.Option(metavar="ADDRESS", help="scheduler of a Dask cluster instead")] = "",
-    sets: Annotated[
-        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="override a setting; repeatable")
-    ] = None,
+    sets: Sets = None,
     out: Annotated[
         Path | None,
         typer.Option("--out", "-o", parser=_folder, metavar="FOLDER", help="results; by default eval-NAME"),

@@ -22,11 +22,12 @@ from fwk.cli.recordings.log_options import (
     text_of_damage,
 )
 from fwk.cli.recordings.progress import progress_of
-from fwk.cli.run_options import BAD_INPUT, Json
+from fwk.cli.run_options import Json
 from fwk.lcm.type_registry import use_types_of
 from fwk.log_tools.export import Exported, Format, import_log
 from fwk.log_tools.export import export as export_log
 from fwk.log_tools.selection import Selection
+from fwk.program import BAD_INPUT
 
 
 def _new_place(text: str) -> Path:

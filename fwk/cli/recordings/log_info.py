@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from fwk.cli.arguments import folder
 from fwk.cli.output import say, say_table
 from fwk.cli.recordings.find_log import failing, find_log_with_types
+from fwk.cli.recordings.log_options import Types
 from fwk.cli.recordings.progress import progress_of
 from fwk.clock import US_PER_S
 from fwk.display.table import Column, Table
@@ -24,9 +24,7 @@ def log_info(
         bool, typer.Option("--check", help="read every message and compare the check sums; exit 1 at damage")
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="for programs")] = False,
-    types: Annotated[
-        Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ defines the messages")
-    ] = Path(),
+    types: Types = Path(),
 ) -> None:
     """Shows channels, types, counts, rates, ticks, gaps, bookmarks and damage of a log.
 

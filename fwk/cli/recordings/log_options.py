@@ -1,4 +1,4 @@
-"""Options shared by the commands that make new files of logs."""
+"""Options shared by the commands that read logs or make new files of them."""
 
 from pathlib import Path
 from typing import Annotated

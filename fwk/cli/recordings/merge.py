@@ -11,8 +11,9 @@ from fwk.cli.output import say
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.log_options import Force, Out, text_of_damage
 from fwk.cli.recordings.progress import progress_of
-from fwk.cli.run_options import BAD_INPUT, Json
+from fwk.cli.run_options import Json
 from fwk.log_tools.merge import merge as merge_logs
+from fwk.program import BAD_INPUT
 
 
 def merge(

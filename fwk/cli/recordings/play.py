@@ -10,8 +10,9 @@ from typing import Annotated, NoReturn
 import typer
 
 from fwk.bus.public import PublicBus
-from fwk.cli.arguments import folder, speed
+from fwk.cli.arguments import speed
 from fwk.cli.recordings.find_log import failing, find_log_with_types
+from fwk.cli.recordings.log_options import Types
 from fwk.cli.recordings.play_controls import Controls
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import Json
@@ -58,9 +59,7 @@ def play(
         _Patterns, typer.Option(metavar="MODULE:CLASS", help="class that changes messages; repeatable")
     ] = None,
     url: Annotated[str, typer.Option(metavar="URL", help="the public bus")] = Plan.public_url,
-    types: Annotated[
-        Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ defines the messages")
-    ] = Path(),
+    types: Types = Path(),
     as_json: Json = False,
 ) -> None:
     """Gives a recording, or a log of lcm-logger, back to the public bus: the same channels, bytes and order.

@@ -9,9 +9,10 @@ from fwk.cli.output import say
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.log_options import Force, Log, Out
 from fwk.cli.recordings.progress import progress_of
-from fwk.cli.run_options import BAD_INPUT, Json
+from fwk.cli.run_options import Json
 from fwk.log_tools.repair import Repaired
 from fwk.log_tools.repair import repair as repair_log
+from fwk.program import BAD_INPUT
 
 
 def repair(log: Log, out: Out, force: Force = False, as_json: Json = False) -> None:

@@ -11,12 +11,13 @@ import typer
 from fwk.cli.output import say_table
 from fwk.cli.run.run_directory import GB, KEEP, RUNS, RunDir, prune, run_dirs
 from fwk.cli.run.run_record import RunRecord, age_s, read_record
-from fwk.cli.run_options import BAD_INPUT, Json
+from fwk.cli.run_options import Json
 from fwk.clock import US_PER_S
 from fwk.control.runs import states
 from fwk.display.table import Column, Table
 from fwk.model.errors import hint
 from fwk.model.sections import RunsPlan
+from fwk.program import BAD_INPUT
 
 _MB = 1_000_000
 

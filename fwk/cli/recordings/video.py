@@ -6,8 +6,9 @@ from typing import Annotated
 
 import typer
 
-from fwk.cli.arguments import folder, video_file
+from fwk.cli.arguments import video_file
 from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.recordings.log_options import Types
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run.rendering import render, report
 from fwk.cli.run_options import Json
@@ -22,9 +23,7 @@ def video(
         Path, typer.Option("--out", "-o", parser=video_file, metavar="FILE.mp4", help="where the video goes")
     ],
     draw: Annotated[str, typer.Option(help="module:function that draws; by default the launch file's 'video'")] = "",
-    types: Annotated[
-        Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ defines the messages")
-    ] = Path(),
+    types: Types = Path(),
     as_json: Json = False,
 ) -> None:
     """Draws a recording into an mp4 video, as H.264 or VP9 where available, else as MPEG-4 part 2.

@@ -15,6 +15,7 @@ from fwk.cli.arguments import Hosting, SeveralNames, new_file, record_parts, sec
 from fwk.cli.arguments import speed as parse_speed
 from fwk.cli.commands import VersionFlag
 from fwk.cli.examples import epilog
+from fwk.cli.plan_options import ProcessHosting, Sets
 from fwk.cli.run.console import beside, check_library
 from fwk.cli.run.detach import detach as detach_run
 from fwk.cli.run.free_ports import on_free_ports
@@ -86,12 +87,8 @@ def launch(
     record_compress: Annotated[
         bool, typer.Option("--record-compress", help="compress finished parts, and the rest at the end")
     ] = False,
-    sets: Annotated[
-        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="override a setting; repeatable")
-    ] = None,
-    hosting: Annotated[
-        Hosting, typer.Option(help="one process a component, one a namespace, or one for all")
-    ] = Hosting.PROCESS,
+    sets: Sets = None,
+    hosting: ProcessHosting = Hosting.PROCESS,
     only: Annotated[
         list[str] | None, typer.Option(metavar="NAME...", help="only these components; several names or repeated")
     ] = None,

@@ -8,8 +8,8 @@ import typer
 
 from fwk.cli.arguments import seconds
 from fwk.cli.look.bb import field_lines
-from fwk.cli.run_options import FAILED, Json, RunChoice, ask, asking
-from fwk.cli.steer.send import made
+from fwk.cli.run_options import Json, RunChoice, ask, asking
+from fwk.cli.steer.send import Fields, made
 from fwk.component.services import ANSWERS
 from fwk.control import runs
 from fwk.control.client import Client, RefusedError
@@ -18,20 +18,14 @@ from fwk.lcm.messages import MessageError
 from fwk.lcm.type_registry import use_types_of
 from fwk.model.errors import hint
 from fwk.plan.wiring.command_wiring import OUTSIDE
+from fwk.program import FAILED
 
 TIMEOUT_S = 10.0
 
 
 def call(
     name: Annotated[str, typer.Argument(metavar="NAME", help="a command or request, such as house/pour")],
-    fields: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="FIELD=VALUE...",
-            help="fields of the message, the others are zero; member of a struct: field.below=1; text of a file: "
-            "field=@FILE",
-        ),
-    ] = None,
+    fields: Fields = None,
     timeout_s: Annotated[
         float,
         typer.Option("--timeout", parser=seconds, metavar="SECONDS", help="how long to wait for the last answer"),

@@ -7,10 +7,11 @@ import typer
 
 from fwk.cli.conditions import pattern
 from fwk.cli.output import say_table
-from fwk.cli.run_options import FAILED, Json, RunChoice, asking
+from fwk.cli.run_options import Json, RunChoice, asking
 from fwk.control import runs
 from fwk.control.client import Client, ControlError
 from fwk.display.table import Column, Table
+from fwk.program import FAILED
 
 config = typer.Typer(add_completion=False, no_args_is_help=True)
 SomeSettings = Annotated[

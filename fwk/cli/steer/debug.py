@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from fwk.cli.run_options import BAD_INPUT, FAILED, RunChoice, ask, asking
+from fwk.cli.run_options import RunChoice, ask, asking
 from fwk.control import runs
 from fwk.control.client import ControlError, RefusedError
 from fwk.host.attach import NoPlaceError, Place
@@ -19,6 +19,7 @@ from fwk.model.errors import PlanError, Problems, hint
 from fwk.model.plan import ComponentPlan, Plan
 from fwk.model.plan_document import plan_from
 from fwk.plan.files.folders import join
+from fwk.program import BAD_INPUT, FAILED
 
 WAIT_S = 60.0  # the component may be in a long iteration
 

@@ -8,10 +8,11 @@ from typing import Annotated, Any
 
 import typer
 
-from fwk.cli.run_options import FAILED, Json, Names, RunChoice, Timeout, ask, asking
+from fwk.cli.run_options import Json, Names, RunChoice, Timeout, ask, asking
 from fwk.control import runs
 from fwk.control.client import NoAnswerError, RefusedError
 from fwk.control.requests import Action
+from fwk.program import FAILED
 
 WAIT_S = 30.0
 _EXIT_CODES = "Exit code 0: done; 1: a component failed, or the time-out passed; 2: refused."

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from fwk.bus.public import PublicBus
-from fwk.cli.run_options import BAD_INPUT, FAILED, Json, RunChoice, asking
+from fwk.cli.run_options import Json, RunChoice, asking
 from fwk.control import runs
 from fwk.control.requests import refuse_deep_nesting
 from fwk.lcm import messages
@@ -17,9 +17,19 @@ from fwk.lcm.messages import MessageError
 from fwk.lcm.type_registry import use_types_of
 from fwk.model.errors import Problems, hint
 from fwk.plan.files.source import read_value
+from fwk.program import BAD_INPUT, FAILED
 
 _NO_FIELD = "'{}' is not FIELD=VALUE; write for example x_m=1.5, or xs=[1, 2]"
 _NUMBERS = {*INTEGERS, "float", "double"}
+
+Fields = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="FIELD=VALUE...",
+        help="fields of the message, the others are zero; member of a struct: field.below=1; text of a file: "
+        "field=@FILE",
+    ),
+]
 
 
 def send(
@@ -30,14 +40,7 @@ def send(
             help="a channel that programs outside may write: 'outside:' of the launch file, or --outside",
         ),
     ],
-    fields: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="FIELD=VALUE...",
-            help="fields of the message, the others are zero; member of a struct: field.below=1; text of a file: "
-            "field=@FILE",
-        ),
-    ] = None,
+    fields: Fields = None,
     chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:

@@ -8,7 +8,6 @@ from typing import Any
 
 import typer
 
-from fwk.cli.run_options import BAD_INPUT, FAILED
 from fwk.control.host_file import KeepError, Kept, forget, keep
 from fwk.control.requests import RequestError
 from fwk.control.settings import RunSettings
@@ -18,6 +17,7 @@ from fwk.plan.classes import UnusableError
 from fwk.plan.files.json_schema import schema_of_component, schema_of_file, schema_of_files
 from fwk.plan.files.launch_file import host_file, shown
 from fwk.plan.load import load_plan
+from fwk.program import BAD_INPUT, FAILED
 
 
 def rows_of(file: str, names: list[str]) -> list[dict[str, Any]]:
