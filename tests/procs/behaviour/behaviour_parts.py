@@ -1,8 +1,10 @@
 """Short descriptions of matches for tests of the behaviour."""
 
+import math
 from typing import Any
 
 from fwk.testing import Bench
+from lcmtypes.robot import motor_command_t
 from procs.behaviour.roles import Job
 from procs.behaviour.view import Agreement, Ball, Robot, View
 from procs.model.field import Field, Point
@@ -41,3 +43,10 @@ def put(bench: Bench, port: str, **fields: Any) -> None:
     made: Any = bench.port(port).message_type()
     made.header.time_us = bench.time_us
     bench.port(port).put(made, **fields)
+
+
+def moved(place: Point, heading_rad: float, command: motor_command_t) -> tuple[Point, float]:
+    """Returns place and heading of a robot that has followed a command for a period of 0.05 s."""
+    cos, sin = math.cos(heading_rad), math.sin(heading_rad)
+    vx_m_s, vy_m_s = cos * command.vx_m_s - sin * command.vy_m_s, sin * command.vx_m_s + cos * command.vy_m_s
+    return Point(place.x_m + 0.05 * vx_m_s, place.y_m + 0.05 * vy_m_s), heading_rad + 0.05 * command.omega_rad_s

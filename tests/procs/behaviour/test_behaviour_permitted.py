@@ -14,7 +14,7 @@ from procs.behaviour.permitted import Permitted, is_field_player
 from procs.behaviour.skiller import Skiller
 from procs.model.field import Point
 from procs.model.robot import PLAYERS
-from tests.procs.behaviour.behaviour_parts import FIELD
+from tests.procs.behaviour.behaviour_parts import FIELD, moved
 
 AREA_M = 11.0 - FIELD.goal_area_depth_m
 """Distance of the front of a goal area from the halfway line."""
@@ -43,11 +43,7 @@ def driven(x_m: float, y_m: float, keeper: bool, ticks: int = 120) -> tuple[int,
         target.header.time_us = navigator.time_us
         navigator.port("drive_target").put(target)
         navigator.iterate()
-        command = navigator.port("motor_command").sent[-1]
-        cos, sin = math.cos(heading_rad), math.sin(heading_rad)
-        vx_m_s, vy_m_s = cos * command.vx_m_s - sin * command.vy_m_s, sin * command.vx_m_s + cos * command.vy_m_s
-        here = Point(here.x_m + 0.05 * vx_m_s, here.y_m + 0.05 * vy_m_s)
-        heading_rad += 0.05 * command.omega_rad_s
+        here, heading_rad = moved(here, heading_rad, navigator.port("motor_command").sent[-1])
     return skiller.skill.sent[-1].answer.state, here
 
 

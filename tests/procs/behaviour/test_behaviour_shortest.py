@@ -14,7 +14,7 @@ from procs.behaviour.path import Disc
 from procs.behaviour.shortest import first_turn
 from procs.model.field import Point
 from procs.model.game_states import State
-from tests.procs.behaviour.behaviour_parts import FIELD, robot
+from tests.procs.behaviour.behaviour_parts import FIELD, moved, robot
 
 START, TARGET = Point(-3.0, 0.0), Point(3.0, 0.0)
 
@@ -71,11 +71,7 @@ def seconds_home(own: Point, place: Point, rivals: list[Point], whose: Whose) ->
         target.avoid_robots, target.header.time_us = True, navigator.time_us
         navigator.port("drive_target").put(target)
         navigator.iterate()
-        command = navigator.port("motor_command").sent[-1]
-        cos, sin = math.cos(heading_rad), math.sin(heading_rad)
-        vx_m_s, vy_m_s = cos * command.vx_m_s - sin * command.vy_m_s, sin * command.vx_m_s + cos * command.vy_m_s
-        own = Point(own.x_m + 0.05 * vx_m_s, own.y_m + 0.05 * vy_m_s)
-        heading_rad += 0.05 * command.omega_rad_s
+        own, heading_rad = moved(own, heading_rad, navigator.port("motor_command").sent[-1])
         if math.dist(own, place) < 0.3:
             return 0.05 * tick
     return math.inf
