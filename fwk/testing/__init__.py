@@ -3,6 +3,7 @@
 from fwk.lcm.type_registry import use_types_of
 from fwk.model.errors import PlanError
 from fwk.testing.bench import Bench, program_bench
+from fwk.testing.document import Document
 from fwk.testing.expression import Expression, ExpressionError, reads_messages
 from fwk.testing.launched import launch_plan, settings_in, system_of
 from fwk.testing.memory import MemorySystem
@@ -10,6 +11,7 @@ from fwk.testing.scenario import Expectations, Verdict, Watch, play
 
 __all__ = [
     "Bench",
+    "Document",
     "Expectations",
     "Expression",
     "ExpressionError",

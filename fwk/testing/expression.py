@@ -61,6 +61,8 @@ class Expression:
             ExpressionError: the text is not a condition, or it has an unknown word.
         """
         self.text = text
+        if not text.strip():
+            raise ExpressionError("an empty condition; write such as robot.odometry.x_m >= 1")
         self._words = {**_PLAIN, **(words or {})}
         try:
             tree = ast.parse(text.strip(), mode="eval")
@@ -70,6 +72,7 @@ class Expression:
             raise ExpressionError(f"'{text:.60}': cannot be read; write it shorter ({error})") from error
         for node in ast.walk(tree):
             self._check(node)
+        self._reads = any(isinstance(node, ast.Name) for node in ast.walk(tree))
         names = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and node.id not in self._words]
         self._namespaces = sorted({node.id for node in names})
         used = _namespaces_in(tree)
@@ -109,7 +112,7 @@ class Expression:
             ExpressionError: besides, the value is of a kind that says nothing, such as a function or a message.
         """
         value = self.value(newest)
-        if isinstance(self._tree.body, ast.Constant):
+        if not self._reads:
             raise ExpressionError(f"'{self.text}': a fixed value is no condition; compare something with it")
         wrong = always_holds(self.text.strip(), value)
         if wrong:

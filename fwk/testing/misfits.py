@@ -66,8 +66,10 @@ class Misfits:
             parts = part.values
         elif isinstance(part, ast.UnaryOp) and isinstance(part.op, ast.Not):
             parts = [part.operand]
-        found = (always_holds(self._said(each), self._values(each)) for each in parts)
-        return next(filter(None, found), "")
+        found = (
+            always_holds(self._said(each), value) for each in parts if always_holds("", value := self._values(each))
+        )
+        return next(found, "")
 
     def _compared(self, part: ast.Compare) -> str:
         for left, operation, right in _pairs(part):

@@ -22,6 +22,9 @@ from procs.scenarios.action import Action
 if TYPE_CHECKING:
     from procs.scenarios.file import Scenario
 
+_TOLD = 8
+"""Mistakes of a scenario that an answer tells."""
+
 
 class CrewConfig(Config):
     """Settings of the crew."""
@@ -92,7 +95,9 @@ class Crew(Component):
         try:
             scenario = found(request.value.name, request.value.text)
         except ScenarioError as error:
-            request.reject("; ".join(str(error).splitlines()))
+            mistakes = str(error).splitlines()
+            more = f"; and {len(mistakes) - _TOLD} more" if len(mistakes) > _TOLD else ""
+            request.reject("; ".join(mistakes[:_TOLD]) + more)
             return
         strangers = [robot for robot in scenario.everyone if robot not in robots]
         if strangers:

@@ -1,24 +1,21 @@
 """Scenario file: its keys and their meanings, and the book of scenarios."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
-import yaml
-from pydantic import BeforeValidator, FiniteFloat, NonNegativeInt, Strict, ValidationError
+from pydantic import BeforeValidator, FiniteFloat, NonNegativeInt, Strict
 
-from fwk.testing import Expectations
+from fwk.testing import Document, Expectations, PlanError
 from procs.model.realism import Realism
 from procs.scenarios.action import Action
 from procs.scenarios.mistakes import (
-    UniqueKeys,
     ball_mistakes,
     command_mistakes,
     place_mistakes,
     robot_mistakes,
     simulator_settings,
     team_mistakes,
-    texts_of,
 )
 from procs.simulation.physics.start_places import three_numbers
 from procs.simulation.simulator import SimulatorConfig
@@ -26,6 +23,8 @@ from procs.simulation.simulator import SimulatorConfig
 BOOK = Path(__file__).parent / "book"
 """Folder of the scenarios that come with the robots."""
 _BALL_S = 0.1
+_LONGEST = 100_000
+"""Letters of a file at most: a match waits while its crew reads one."""
 _Number = Annotated[FiniteFloat, Strict()]
 
 
@@ -73,46 +72,57 @@ class Scenario(Expectations):
         return self.commands + ([Action(at_s=_BALL_S, place_ball=self.ball)] if self.ball else [])
 
 
-def parsed(text: str, where: str, further: Callable[[Scenario], Iterable[str]] = lambda _: ()) -> Scenario:
+Check = Callable[[Scenario, Document], None]
+"""Adds the mistakes of a scenario to its document."""
+
+
+def _nothing(_: Scenario, __: Document) -> None:
+    pass
+
+
+def parsed(text: str, where: str, further: Check = _nothing, last: Check = _nothing) -> Scenario:
     """Returns the scenario of a file's text.
 
     Args:
         text: content of the file.
         where: name of the file, for the mistakes.
-        further: returns mistakes beside those of robots, places and commands.
+        further: checks more than robots, places and commands.
+        last: checks what only a scenario without other mistakes shows.
 
     Raises:
         ScenarioError: the text is not a scenario; the error has a line for each mistake.
     """
+    if len(text) > _LONGEST:
+        raise ScenarioError(f"{where}: it has {len(text):,} letters; a scenario has {_LONGEST:,} at most")
     try:
-        content = yaml.load(text, UniqueKeys)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        raise ScenarioError(f"{where}:{mark.line + 1 if mark else 1}: {error.problem or error.context}") from error
-    except RecursionError as error:
-        raise ScenarioError(f"{where}: its values are nested too deep") from error
-    except yaml.YAMLError as error:
-        raise ScenarioError(f"{where}: {error}") from error
-    if not isinstance(content, dict):
-        raise ScenarioError(f"{where}: holds no keys; there are {', '.join(Scenario.model_fields)}")
-    try:
-        scenario = Scenario.model_validate(content)
-    except ValidationError as error:
-        found = texts_of(error, known=list(Scenario.model_fields))
-    else:
+        document = Document(text, where)
+        scenario = document.values(Scenario)
+        document.raise_mistakes()
+        assert scenario
         config = simulator_settings(scenario.settings)
-        found = [*_mistakes(scenario, config), *further(scenario)]
-        if not scenario.conditions:
-            found.append("nothing has to happen; give eventually, in_order, always or at_end")
-        found = found or list(place_mistakes(scenario.places, config))
-    if found:
-        raise ScenarioError("\n".join(f"{where}: {each}" for each in found))
+        _add(document, _mistakes(scenario, config))
+        further(scenario, document)
+        document.raise_mistakes()
+        _add(document, place_mistakes(scenario.places, config))
+        document.raise_mistakes()
+        last(scenario, document)
+        document.raise_mistakes()
+    except PlanError as error:
+        raise ScenarioError(str(error)) from error
     return scenario
 
 
-def _mistakes(scenario: Scenario, config: SimulatorConfig) -> list[str]:
-    found = list(robot_mistakes([*scenario.robots, *scenario.seeing], scenario.dummies, scenario.places))
-    found += team_mistakes([*scenario.robots, *scenario.seeing], scenario.settings)
-    found += ball_mistakes(scenario.ball, config.field)
-    found += command_mistakes(scenario.commands, scenario.everyone, scenario.time_s, config)
-    return found
+def _mistakes(scenario: Scenario, config: SimulatorConfig) -> Iterator[str]:
+    yield from robot_mistakes([*scenario.robots, *scenario.seeing], scenario.dummies, scenario.places)
+    yield from team_mistakes([*scenario.robots, *scenario.seeing], scenario.settings)
+    yield from ball_mistakes(scenario.ball, config.field)
+    yield from command_mistakes(scenario.commands, scenario.everyone, scenario.time_s, config)
+    if not scenario.conditions:
+        yield "nothing has to happen; give eventually, in_order, always or at_end"
+
+
+def _add(document: Document, mistakes: Iterable[str]) -> None:
+    """Adds mistakes, each with the line of the value with whose path it begins."""
+    for mistake in mistakes:
+        path = mistake.partition(":")[0].split(".")
+        document.add(mistake, *(int(key) if key.isdecimal() else key for key in path))

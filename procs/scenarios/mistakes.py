@@ -1,12 +1,15 @@
-"""Mistakes in scenario files, in words that say where they are and what would be right."""
+"""Mistakes in scenario files, in words that say where they are and what would be right.
 
+A mistake begins with the path of its value: `commands.0: place_ball: ...`.
+"""
+
+import math
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from difflib import get_close_matches
 from typing import Any
 
-import yaml
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
 from lcmtypes.soccer import place_ball_t
 from procs.model.field import Field, Point
@@ -20,61 +23,20 @@ from procs.simulation.physics.room import Room
 from procs.simulation.simulator import SimulatorConfig
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+_TURN_RAD = 2 * math.pi
 _LARGE_NUMBER = re.compile(r".*?0*[1-9]\d{9,}")
-
-
-class UniqueKeys(yaml.SafeLoader):
-    """Reads YAML and refuses a key that is given twice, of which PyYAML keeps the last alone."""
-
-    def construct_object(self, node: yaml.Node, deep: bool = False) -> Any:
-        """Returns the value of a node.
-
-        Raises:
-            ConstructorError: the value is impossible, such as a date in a thirteenth month.
-        """
-        try:
-            return super().construct_object(node, deep)
-        except ValueError as error:
-            raise yaml.constructor.ConstructorError(None, None, f"no such value: {error}", node.start_mark) from error
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        """Returns the values by their keys.
-
-        Raises:
-            ConstructorError: a key is given twice.
-        """
-        seen = set[str]()
-        for key, _ in node.value:
-            if isinstance(key, yaml.ScalarNode) and key.value in seen:
-                raise yaml.constructor.ConstructorError(None, None, f"'{key.value}' is given twice", key.start_mark)
-            seen.add(str(key.value))
-        return super().construct_mapping(node, deep)
-
-
-def texts_of(error: ValidationError, where: str = "", known: Sequence[str] = ()) -> list[str]:
-    """Returns one text for each mistake that pydantic found; `known` are the keys of the outermost level."""
-    found = []
-    for each in error.errors(include_url=False):
-        path = [*([where] if where else []), *map(str, each["loc"])]
-        if each["type"] == "extra_forbidden":
-            found.append(": ".join(filter(None, (".".join(path[:-1]), _unknown(path[-1], known)))))
-        elif each["type"] == "missing":
-            found.append(": ".join(filter(None, (".".join(path[:-1]), f"{path[-1]} is missing"))))
-        else:
-            found.append(f"{'.'.join(path)}: {each['msg'].removeprefix('Value error, ')}")
-    return found
 
 
 def robot_mistakes(robots: Sequence[str], dummies: Sequence[str], places: Mapping[str, Any]) -> Iterator[str]:
     """Yields what is wrong with the names of robots."""
-    everyone = [*robots, *dummies]
-    for name in dict.fromkeys(everyone):
+    everyone = Counter([*robots, *dummies])
+    for name, times in everyone.items():
         if not _NAME.fullmatch(name):
             yield f"robots: '{name}' is not a name; use letters, digits, '_' and '-', such as cyan1"
         if _LARGE_NUMBER.fullmatch(name):
             yield f"robots: '{name}' has a number that is too large; use one of nine digits at most, such as cyan1"
-        if everyone.count(name) > 1:
-            yield f"robots: '{name}' is named {everyone.count(name)} times"
+        if times > 1:
+            yield f"robots: '{name}' is named {times} times"
     for name in places:
         if name not in everyone:
             yield f"places: no robot '{name}'; there are {', '.join(sorted(everyone)) or 'none'}"
@@ -112,7 +74,7 @@ def _refusals(action: Action, everyone: Sequence[str], config: SimulatorConfig) 
     elif action.kind == "referee":
         yield mistake_in(command.name, command.team, robot, everyone, Names(config.players))
     elif action.kind == "place_robot":
-        yield robot_mistake(command, everyone, config.field)
+        yield robot_mistake(command, everyone, config.field) or _heading_mistake(command.heading_rad)
     elif action.kind == "place_ball":
         yield ball_mistake(command, config.field)
 
@@ -127,29 +89,13 @@ def simulator_settings(settings: Mapping[str, Mapping[str, Any]]) -> SimulatorCo
 
 def place_mistakes(places: Mapping[str, Sequence[float]], config: SimulatorConfig) -> Iterator[str]:
     """Yields which robots would stand outside the walls, in a goal, or in each other."""
+    for name, (_, _, heading_rad) in places.items():
+        if mistake := _heading_mistake(heading_rad):
+            yield f"places.{name}: {mistake}"
     starts = {name: Point(x_m, y_m) for name, (x_m, y_m, _) in places.items()}
     yield from (f"places: {each}" for each in Room(config.field).mistakes_in(starts, config.robot.radius_m))
 
 
-def settings_mistakes(
-    settings: Mapping[str, Mapping[str, Any]], configs: Mapping[str, type[BaseModel] | None]
-) -> Iterator[str]:
-    """Yields what is wrong with the settings of components; `configs` has the model of each component's settings."""
-    for name, values in settings.items():
-        if name not in configs:
-            yield f"settings: no component '{name}'; {right_name(name, configs)}"
-            continue
-        model = configs[name]
-        if model is None:
-            if values:
-                yield f"settings: {name} has no settings"
-            continue
-        try:
-            model.model_validate(values)
-        except ValidationError as error:
-            yield from texts_of(error, name, list(model.model_fields))
-
-
-def _unknown(key: str, known: Sequence[str]) -> str:
-    near = get_close_matches(key, known, 1)
-    return f"no key '{key}'" + (f"; did you mean '{near[0]}'?" if near else "")
+def _heading_mistake(heading_rad: float) -> str:
+    right = f"it should be from {-_TURN_RAD:.2f} to {_TURN_RAD:.2f}, in radians"
+    return "" if abs(heading_rad) < _TURN_RAD + 0.01 else f"heading_rad is {heading_rad:g}; {right}"

@@ -1,25 +1,25 @@
 """Run of a scenario in memory: its components, its mistakes and its verdict."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, get_type_hints
 
 import yaml
-from pydantic import ValidationError
 
 from fwk import Component, Config
-from fwk.testing import Expression, ExpressionError, MemorySystem, Verdict, play
+from fwk.testing import Document, Expectations, Expression, ExpressionError, MemorySystem, Verdict, play
 from procs.behaviour.agent import Agent
 from procs.behaviour.navigator import Navigator
 from procs.behaviour.skiller import Skiller
 from procs.drivers.base import Base
 from procs.drivers.kicker import Kicker
 from procs.localization.localization import Localization
+from procs.model.right_name import right_name
 from procs.model.robot import team_of
 from procs.referee.referee import Referee, RefereeConfig
 from procs.scenarios.crew import Crew
 from procs.scenarios.dummy import Dummy
 from procs.scenarios.file import Scenario, ScenarioError, parsed
-from procs.scenarios.mistakes import settings_mistakes, texts_of
 from procs.scenarios.perfect_world import PerfectWorldModel
 from procs.scenarios.words import WORDS
 from procs.simulation.percepts import Percepts
@@ -56,51 +56,56 @@ def read(path: Path) -> Scenario:
     try:
         text = path.read_text()
     except UnicodeDecodeError as error:
-        raise ScenarioError(f"{path}: {error}") from error
-    scenario = parsed(text, str(path), _mistakes)
-    if found := _unknown_in(scenario):
-        raise ScenarioError("\n".join(f"{path}: {each}" for each in found))
-    return scenario
+        raise ScenarioError(f"{path}: it is not UTF-8 text") from error
+    return parsed(text, str(path), _check, _check_run)
 
 
-def _mistakes(scenario: Scenario) -> list[str]:
-    """Returns the mistakes in rules, settings and conditions."""
-    found: list[str] = []
-    configs = {name: _config(kind) for name, kind in _components(scenario).items()}
-    try:
-        RefereeConfig.model_validate(scenario.rules)
-    except ValidationError as error:
-        found += texts_of(error, "rules", list(RefereeConfig.model_fields))
-    found += settings_mistakes(scenario.settings, configs)
-    if CREW in scenario.settings:
-        found.append(f"settings: {CREW} has its actions under commands")
-    for text in scenario.conditions:
+def _check(scenario: Scenario, document: Document) -> None:
+    """Adds the mistakes in rules, settings and conditions."""
+    document.values(RefereeConfig, "rules", who="rules", what="setting")
+    kinds = _components(scenario)
+    for name, values in scenario.settings.items():
+        config = _config(kinds[name]) if name in kinds else None
+        if name not in kinds:
+            document.add(f"settings: no component '{name}'; {right_name(name, kinds)}", "settings", name)
+        elif name == CREW:
+            document.add(f"settings: {CREW} has its actions under commands", "settings", name)
+        elif config:
+            document.values(config, "settings", name, who=name, what="setting")
+        elif values:
+            document.add(f"settings: {name} has no settings", "settings", name)
+    for path, text in _conditions(scenario):
         try:
             Expression(text, WORDS)
         except ExpressionError as error:
-            found.append(str(error))
-    return found
+            document.add(str(error), *path)
 
 
-def _unknown_in(scenario: Scenario) -> list[str]:
-    """Returns the conditions that name a channel, field, robot or state that the first tick does not have.
+def _check_run(scenario: Scenario, document: Document) -> None:
+    """Adds the conditions that name a channel, field, robot or state that the first tick does not have.
 
     Settings with which no system begins, such as two robots of one number, come before.
     """
-    found: list[str] = []
     try:
         system = system_of(scenario)
         system.tick()
     except ValueError as error:
-        return [str(error)]
-    for text in scenario.conditions:
+        document.add(str(error), "settings", str(error).partition(":")[0])
+        return
+    for path, text in _conditions(scenario):
         try:
             Expression(text, WORDS).holds(system.newest)
         except ExpressionError as error:
             cause = error.__cause__
             if cause is None or isinstance(cause, (AttributeError, KeyError, OverflowError, RecursionError, TypeError)):
-                found.append(str(error))
-    return found
+                document.add(str(error), *path)
+
+
+def _conditions(scenario: Scenario) -> Iterator[tuple[tuple[str, int], str]]:
+    """Yields the conditions, each after its path."""
+    for kind in Expectations.model_fields:
+        if kind != "time_s":
+            yield from (((kind, place), text) for place, text in enumerate(getattr(scenario, kind)))
 
 
 def _config(kind: type[Component]) -> type[Config] | None:

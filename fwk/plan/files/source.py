@@ -93,7 +93,7 @@ def read_yaml(path: Path, shown: str, problems: Problems) -> Node | None:
         text = f"more than {BYTES_MAX:,} bytes are too many for a launch file; split the system, or use templates"
         problems.add(shown, "", text)
         return None
-    return _parse(text, shown, problems)
+    return read_text(text, shown, problems)
 
 
 def _read(path: Path) -> bytes:
@@ -111,7 +111,7 @@ def read_value(text: str, place: str, problems: Problems) -> Node | None:
     if not text.strip():
         return Node("", place)
     scratch = Problems()
-    node = _parse(text, place, scratch)
+    node = read_text(text, place, scratch)
     if scratch:
         said = text if len(text) <= _SHOWN_MAX else f"{text[:_SHOWN_MAX]}..."
         problems.add(place, "", f"{said!r} is not a YAML value; write a number, true, false, text, [a, b] or {{a: 1}}")
@@ -127,7 +127,8 @@ def _replaced(node: Node, place: str) -> Node:
     return Node(node.value, place)
 
 
-def _parse(text: str, shown: str, problems: Problems) -> Node | None:
+def read_text(text: str, shown: str, problems: Problems) -> Node | None:
+    """Reads a text; `shown` is its name in places. Returns None after a mistake, which is added to `problems`."""
     loader = None
     try:
         loader = _Loader(text)
@@ -216,7 +217,7 @@ class _Converter:
             if kind == "float":
                 return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
         except (KeyError, ValueError):
-            self._problems.add(place, "", f"'{text}' is not a valid {kind}")
+            self._problems.add(place, "", f"'{text:.{_SHOWN_MAX}}' is not a valid {kind}")
             return None
         self._problems.add(place, "", f"unknown tag '{node.tag}'; leave it out")
         return None

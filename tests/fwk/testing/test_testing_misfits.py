@@ -100,3 +100,9 @@ def test_index_beyond_the_end_is_named() -> None:
 def test_list_or_number_may_be_a_condition() -> None:
     assert Expression("world.state.names").holds(newest)
     assert not Expression("world.state.score - 2").holds(newest)
+
+
+def test_sound_condition_is_not_spelt_part_by_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Spelling takes the longer, the longer the condition is."""
+    monkeypatch.setattr("ast.get_source_segment", pytest.fail)
+    assert Expression(" or ".join(["world.state.score > 1"] * 9)).holds(newest)

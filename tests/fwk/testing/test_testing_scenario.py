@@ -42,6 +42,7 @@ def test_value_of_a_condition(text: str, value: Any) -> None:
     ("text", "message"),
     [
         ("world.state.score >", "invalid syntax"),
+        (" ", "an empty condition; write such as robot.odometry.x_m >= 1"),
         ("__import__('os')", "calls only abs"),
         ("world.state.score.__class__", "begins with an underscore"),
         ("[each for each in world.state.names]", "ListComp is not allowed"),

@@ -133,13 +133,18 @@ def test_robots_change_places() -> None:
         ("match-end", "", "no scenario 'match-end' in the book; did you mean 'match-ends'?"),
         ("", "", "no scenario '' in the book; a file of your own is given as text=@FILE"),
         ("../book/match-ends", "", "no scenario '../book/match-ends' in the book; did you mean 'match-ends'?"),
-        ("mine", "robot: [cyan2]", "mine: no key 'robot'; did you mean 'robots'?"),
-        ("", "[", "text:1: expected the node content, but found '<stream end>'"),
+        ("mine", "robot: [cyan2]", "mine:1: no key 'robot'; did you mean 'robots'?"),
+        (
+            "",
+            "[",
+            "text:1: this is not valid YAML: while parsing a flow node that begins in line 1, "
+            "expected the node content, but found '<stream end>'",
+        ),
         (
             "",
             "robots: [cyan2, cyan2]\nball: {x_m: 99}\nalways: [ball_speed < 9]",
-            "text: robots: 'cyan2' is named 2 times; "
-            "text: ball: (99, 0) is outside the walls; x is at most 12 m, y 8 m",
+            "text:1: robots: 'cyan2' is named 2 times; "
+            "text:2: ball: (99, 0) is outside the walls; x is at most 12 m, y 8 m",
         ),
         ("", "dummies: [cyan9]\nat_end: [goal]", "no robot 'cyan9' in this match; there are: cyan1, cyan2, magenta2"),
     ],
@@ -150,6 +155,14 @@ def test_scenario_that_cannot_be_played_is_rejected(name: str, text: str, reason
     system.tick(2)
     assert answers(system) == [(answer_t.REJECTED, reason)]
     assert not game(system).sent_off
+
+
+def test_rejection_names_some_of_many_mistakes() -> None:
+    system = match()
+    ask(system, text=f"places: {{{', '.join(f'cyan{number}: [0, 0, 0]' for number in range(10, 30))}}}")
+    system.tick(2)
+    ((state, reason),) = answers(system)
+    assert (state, reason.count("; text:"), reason[-13:]) == (answer_t.REJECTED, 7, "; and 13 more")
 
 
 def test_newer_scenario_takes_the_place_of_an_older_one() -> None:

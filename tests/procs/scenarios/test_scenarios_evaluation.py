@@ -8,12 +8,7 @@ import pytest
 
 from procs.scenarios import evaluation
 from procs.scenarios.file import ScenarioError
-
-
-def written(folder: Path, text: str) -> Path:
-    path = folder / "mine.yaml"
-    path.write_text(text)
-    return path
+from tests.procs.scenarios.scenario_files import written
 
 
 def test_evaluation_of_the_book_counts_seeds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -40,7 +35,7 @@ def test_evaluation_names_mistakes_before_it_plays(tmp_path: Path, monkeypatch: 
     (tmp_path / "bad.yaml").write_text("robot: [cyan2]\n")
     (tmp_path / "worse.yaml").write_text("- cyan2\n")
     monkeypatch.setattr(evaluation, "outcome", pytest.fail)
-    with pytest.raises(ScenarioError, match=r"bad.yaml: no key 'robot'; .*; .*worse.yaml: holds no keys"):
+    with pytest.raises(ScenarioError, match=r"bad.yaml:1: no key 'robot'; .*; .*worse.yaml:1: "):
         evaluation.played_in(tmp_path, 1)
 
 
