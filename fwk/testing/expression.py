@@ -67,7 +67,8 @@ class Expression:
         try:
             tree = ast.parse(text.strip(), mode="eval")
         except SyntaxError as error:
-            raise ExpressionError(f"'{text}': {error.msg}") from error
+            cure = "; join comparisons such as a.b == 1 with and, or, not" if error.msg == "invalid syntax" else ""
+            raise ExpressionError(f"'{text}': {error.msg}{cure}") from error
         except (ValueError, RecursionError, MemoryError) as error:  # bytes that are no text; a hundred brackets
             raise ExpressionError(f"'{text:.60}': cannot be read; write it shorter ({error})") from error
         for node in ast.walk(tree):
@@ -75,10 +76,12 @@ class Expression:
         self._reads = any(isinstance(node, ast.Name) for node in ast.walk(tree))
         names = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and node.id not in self._words]
         self._namespaces = sorted({node.id for node in names})
-        used = _namespaces_in(tree)
+        used, compared = _namespaces_in(tree), _compared_in(tree)
         for node in names:
             if node not in used:
-                raise ExpressionError(f"'{text}': there is no '{node.id}'; {hint(node.id, self._words)}")
+                right = hint(node.id, self._words)
+                quotes = "; a text needs quotes" if node in compared and right.startswith("there") else ""
+                raise ExpressionError(f"'{text}': there is no '{node.id}'; {right}{quotes}")
         self._names_known = False
         try:
             self._tree = Bounding().visit(tree)
@@ -158,6 +161,11 @@ def _namespaces_in(tree: ast.AST) -> set[ast.expr]:
     calls = [node for node in nodes if isinstance(node, ast.Call)]
     arguments = (each for call in calls if getattr(call.func, "id", "") not in _PLAIN for each in call.args)
     return {*(node.value for node in nodes if isinstance(node, ast.Attribute)), *arguments}
+
+
+def _compared_in(tree: ast.Expression) -> set[ast.expr]:
+    """Returns the two sides of all comparisons."""
+    return {side for node in ast.walk(tree) if isinstance(node, ast.Compare) for side in (node.left, *node.comparators)}
 
 
 def _said(error: Exception) -> str:

@@ -6,8 +6,9 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, FiniteFloat, NonNegativeInt, Strict
 
-from fwk.testing import Document, Expectations, PlanError
+from fwk.testing import Document, Expectations, Expression, ExpressionError, PlanError
 from procs.model.realism import Realism
+from procs.referee.referee import RefereeConfig
 from procs.scenarios.action import Action
 from procs.scenarios.mistakes import (
     ball_mistakes,
@@ -17,6 +18,7 @@ from procs.scenarios.mistakes import (
     simulator_settings,
     team_mistakes,
 )
+from procs.scenarios.words import WORDS
 from procs.simulation.physics.start_places import three_numbers
 from procs.simulation.simulator import SimulatorConfig
 
@@ -62,9 +64,10 @@ class Scenario(Expectations):
         return [*self.robots, *self.seeing, *self.dummies]
 
     @property
-    def conditions(self) -> list[str]:
-        """All conditions."""
-        return [*self.eventually, *self.in_order, *self.always, *self.at_end]
+    def conditions(self) -> list[tuple[tuple[str, int], str]]:
+        """All conditions, each after its path."""
+        kinds = {kind: getattr(self, kind) for kind in ("eventually", "in_order", "always", "at_end")}
+        return [((kind, place), text) for kind, texts in kinds.items() for place, text in enumerate(texts)]
 
     @property
     def actions(self) -> list[Action]:
@@ -86,7 +89,7 @@ def parsed(text: str, where: str, further: Check = _nothing, last: Check = _noth
     Args:
         text: content of the file.
         where: name of the file, for the mistakes.
-        further: checks more than robots, places and commands.
+        further: checks more than robots, places, rules, commands and conditions.
         last: checks what only a scenario without other mistakes shows.
 
     Raises:
@@ -101,6 +104,8 @@ def parsed(text: str, where: str, further: Check = _nothing, last: Check = _noth
         assert scenario
         config = simulator_settings(scenario.settings)
         _add(document, _mistakes(scenario, config))
+        document.values(RefereeConfig, "rules", who="rules", what="setting")
+        _add_conditions(document, scenario)
         further(scenario, document)
         document.raise_mistakes()
         _add(document, place_mistakes(scenario.places, config))
@@ -126,3 +131,12 @@ def _add(document: Document, mistakes: Iterable[str]) -> None:
     for mistake in mistakes:
         path = mistake.partition(":")[0].split(".")
         document.add(mistake, *(int(key) if key.isdecimal() else key for key in path))
+
+
+def _add_conditions(document: Document, scenario: Scenario) -> None:
+    """Adds the conditions that cannot be understood."""
+    for path, text in scenario.conditions:
+        try:
+            Expression(text, WORDS)
+        except ExpressionError as error:
+            document.add(str(error), *path)

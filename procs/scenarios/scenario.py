@@ -1,13 +1,12 @@
 """Run of a scenario in memory: its components, its mistakes and its verdict."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, get_type_hints
 
 import yaml
 
 from fwk import Component, Config
-from fwk.testing import Document, Expectations, Expression, ExpressionError, MemorySystem, Verdict, play
+from fwk.testing import Document, Expression, ExpressionError, MemorySystem, Verdict, play
 from procs.behaviour.agent import Agent
 from procs.behaviour.navigator import Navigator
 from procs.behaviour.skiller import Skiller
@@ -16,7 +15,7 @@ from procs.drivers.kicker import Kicker
 from procs.localization.localization import Localization
 from procs.model.right_name import right_name
 from procs.model.robot import team_of
-from procs.referee.referee import Referee, RefereeConfig
+from procs.referee.referee import Referee
 from procs.scenarios.crew import Crew
 from procs.scenarios.dummy import Dummy
 from procs.scenarios.file import Scenario, ScenarioError, parsed
@@ -61,8 +60,7 @@ def read(path: Path) -> Scenario:
 
 
 def _check(scenario: Scenario, document: Document) -> None:
-    """Adds the mistakes in rules, settings and conditions."""
-    document.values(RefereeConfig, "rules", who="rules", what="setting")
+    """Adds the mistakes in settings."""
     kinds = _components(scenario)
     for name, values in scenario.settings.items():
         config = _config(kinds[name]) if name in kinds else None
@@ -74,11 +72,6 @@ def _check(scenario: Scenario, document: Document) -> None:
             document.values(config, "settings", name, who=name, what="setting")
         elif values:
             document.add(f"settings: {name} has no settings", "settings", name)
-    for path, text in _conditions(scenario):
-        try:
-            Expression(text, WORDS)
-        except ExpressionError as error:
-            document.add(str(error), *path)
 
 
 def _check_run(scenario: Scenario, document: Document) -> None:
@@ -92,20 +85,13 @@ def _check_run(scenario: Scenario, document: Document) -> None:
     except ValueError as error:
         document.add(str(error), "settings", str(error).partition(":")[0])
         return
-    for path, text in _conditions(scenario):
+    for path, text in scenario.conditions:
         try:
             Expression(text, WORDS).holds(system.newest)
         except ExpressionError as error:
             cause = error.__cause__
             if cause is None or isinstance(cause, (AttributeError, KeyError, OverflowError, RecursionError, TypeError)):
                 document.add(str(error), *path)
-
-
-def _conditions(scenario: Scenario) -> Iterator[tuple[tuple[str, int], str]]:
-    """Yields the conditions, each after its path."""
-    for kind in Expectations.model_fields:
-        if kind != "time_s":
-            yield from (((kind, place), text) for place, text in enumerate(getattr(scenario, kind)))
 
 
 def _config(kind: type[Component]) -> type[Config] | None:

@@ -41,7 +41,8 @@ def test_value_of_a_condition(text: str, value: Any) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("world.state.score >", "invalid syntax"),
+        ("world.state.score >", "invalid syntax; join comparisons such as a.b == 1 with and, or, not"),
+        ("world.state.name == offside", "there is no 'offside'; there are .*; a text needs quotes"),
         (" ", "an empty condition; write such as robot.odometry.x_m >= 1"),
         ("__import__('os')", "calls only abs"),
         ("world.state.score.__class__", "begins with an underscore"),

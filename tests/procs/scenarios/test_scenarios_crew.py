@@ -146,7 +146,21 @@ def test_robots_change_places() -> None:
             "text:1: robots: 'cyan2' is named 2 times; "
             "text:2: ball: (99, 0) is outside the walls; x is at most 12 m, y 8 m",
         ),
-        ("", "dummies: [cyan9]\nat_end: [goal]", "no robot 'cyan9' in this match; there are: cyan1, cyan2, magenta2"),
+        (
+            "mine",
+            "always: [ball_spead < 9]",
+            "mine:1: 'ball_spead < 9': there is no 'ball_spead'; did you mean 'ball_speed'?",
+        ),
+        (
+            "mine",
+            "rules: {half: 1}\nat_end: [ball_speed < 9]",
+            "mine:1: rules: no setting 'half'; did you mean 'half_s'?",
+        ),
+        (
+            "",
+            "dummies: [cyan9]\nat_end: [ball_speed < 9]",
+            "no robot 'cyan9' in this match; there are: cyan1, cyan2, magenta2",
+        ),
     ],
 )  # fmt: skip
 def test_scenario_that_cannot_be_played_is_rejected(name: str, text: str, reason: str) -> None:
