@@ -14,7 +14,8 @@ What happens to a sighting that does not fit the track:
 - Otherwise it is kept as a doubt, until a better source confirms the track. Two doubts that fit each other begin a new
   track: the ball was kicked or placed elsewhere. Two doubts of one robot do not suffice if another robot has confirmed
   the track meanwhile.
-- A single sighting suffices for a new track if no robot has seen the ball for a while.
+- A single sighting suffices for a new track if no robot has seen the ball for a while, the ball can have come there, and
+  the sighting is in the air or something may have touched the ball.
 """
 
 import math
@@ -184,7 +185,7 @@ class BallTrack:
             self._begin(sighting)
         elif (fitting := next(filter(self._fuse, (sighting, *others)), None)) is not None:
             self._confirm(fitting)
-        elif self.time_us - self.seen_us > _LOST_US:
+        elif self._strayed(sighting):
             self._begin(sighting)
         elif not self._overruled(sighting) and not self._begin_if_struck(sighting):
             self._doubt(sighting)
@@ -281,6 +282,23 @@ class BallTrack:
                 return
         self.doubts = (*self.doubts, (self.time_us, sighting))
 
+    @property
+    def _may_be_touched(self) -> bool:
+        """Whether a robot, a post or a wall may have touched a known ball a moment ago."""
+        assert self.filter is not None
+        return bool(self.filter.weights[Mode.HANDLED] + self.filter.weights[Mode.HIT] >= _MET)
+
+    def _strayed(self, sighting: Sighting) -> bool:
+        """Returns whether one sighting elsewhere shows a known ball that no robot has seen for a while.
+
+        A ball out of sight that nothing can have touched is still on its way: the sighting shows another thing, which
+        lies on the ground.
+        """
+        if self.time_us - self.seen_us <= _LOST_US:
+            return False
+        turned = sighting.height_m > 0.0 or self._may_be_touched
+        return turned and self._velocity_to(sighting, self.time_us) is not None
+
     def _begin_if_struck(self, sighting: Sighting) -> bool:
         """Begins a new track with the sighting of a moving ball that met something; returns False if it met nothing.
 
@@ -290,7 +308,7 @@ class BallTrack:
         """
         assert self.filter is not None
         flight, ball = self.flight, self.filter.likeliest
-        if self.filter.weights[Mode.HANDLED] + self.filter.weights[Mode.HIT] < _MET:
+        if not self._may_be_touched:
             return False
         velocity_m_s = self._velocity_to(sighting, self.time_us)
         if velocity_m_s is None or self._contradicted(sighting.robot, self.time_us - _AT_ONCE_US):

@@ -145,6 +145,34 @@ def test_resting_ball_does_not_jump_to_one_sighting() -> None:
     assert tracker.track.state == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=0.05)
 
 
+def out_of_sight(contact: float) -> BallTracker:
+    """Returns a ball that rolled away at 4 m/s, and that no robot has seen for half a second."""
+    tracker = BallTracker()
+    for frame in range(22):
+        tracker.advance(PERIOD_S, 2.0, contact=contact)
+        if frame < 12:
+            place_m = np.array((4.0 * PERIOD_S * frame, 0.0))
+            tracker.see(Sighting("a", True, place_m, np.eye(2) * 0.02**2))
+    return tracker
+
+
+@pytest.mark.parametrize(("contact", "y_m", "found"), [(0.0, 4.0, False), (1.0, 4.0, True), (1.0, 40.0, False)])
+def test_unseen_ball_jumps_only_if_it_can_have(contact: float, y_m: float, found: bool) -> None:
+    """Nothing was near a ball that rolls out of sight, and none is as fast as a thing 40 m away would have to be."""
+    tracker, phantom_m = out_of_sight(contact), np.array((1.0, y_m))
+    expected_m = phantom_m if found else tracker.track.state[:2]
+    tracker.see(Sighting("b", False, phantom_m, np.eye(2) * 0.1**2))
+    assert tracker.track.state[:2] == pytest.approx(expected_m, abs=0.01)
+
+
+def test_unseen_ball_is_found_elsewhere_with_two_sightings() -> None:
+    tracker = out_of_sight(contact=0.0)
+    for _ in range(2):
+        tracker.see(Sighting("b", False, np.array((1.0, 4.0)), np.eye(2) * 0.1**2))
+        tracker.advance(PERIOD_S, 2.0)
+    assert tracker.track.state[:2] == pytest.approx((1.0, 4.0), abs=0.2)
+
+
 def test_own_sighting_precedes_an_equally_accurate_mate() -> None:
     tracker = BallTracker()
     own, other = np.array((1.0, 1.0)), np.array((2.5, 1.0))

@@ -184,6 +184,16 @@ def test_lob_that_met_something_is_found_with_one_sighting() -> None:
     assert tracker.flight.height_m == pytest.approx(0.3)
 
 
+def test_unseen_lob_does_not_jump_to_a_thing_that_lies() -> None:
+    tracker = just_lobbed(LIFT_M_S)
+    for _ in range(8):
+        tracker.advance(PERIOD_S, 2.0)
+    before_m = tracker.track.state
+    tracker.see(Sighting("a", True, np.array((1.0, 2.5)), np.eye(2) * 0.1**2, observer_m=EYE_M))
+    assert tracker.track.state == pytest.approx(before_m)
+    assert tracker.flight is not None
+
+
 def test_lob_that_met_something_keeps_its_height() -> None:
     """Something turns a lob aside a moment after the kick: the way over the ground is new, the parabola is not."""
     tracker = just_lobbed(LIFT_M_S)
