@@ -20,9 +20,10 @@ from procs.model.field import Field
 from procs.model.frames import Floats, rotation
 from procs.model.geometry import plausible, wrap_rad
 from procs.model.realism import Realism
+from procs.model.robot import FASTEST_M_S, FASTEST_RAD_S
 from procs.vision.calibration import MirrorConfig
 
-_FASTEST_M_S = 8.0  # no robot drives faster
+_LEAST_M = 0.05  # radius of the smallest robot
 _SHORT_S = 0.05  # up to this age of an exposure, the velocity of the last tick describes the motion well enough
 _AHEAD_S = 0.02  # clocks of cameras may be ahead by this much
 _USUAL = MirrorConfig().mirror()  # the mirror for which the expected errors are stated
@@ -166,7 +167,7 @@ class Localization(Component):
     def _compass_rad(self) -> float | None:
         """Returns the heading that a new message of the compass states; None without one."""
         imu = self.imu.value
-        sound = self.imu.refreshed and plausible(imu.heading_rad, imu.yaw_rate_rad_s)
+        sound = self.imu.refreshed and plausible(imu.heading_rad) and abs(imu.yaw_rate_rad_s) < FASTEST_RAD_S
         return imu.heading_rad if sound else None
 
     def _sees_anew(self) -> bool:
@@ -184,8 +185,10 @@ class Localization(Component):
 
         Returns no points if the way since the exposure is not known or the exposure is in the future, because wrong
         places of lines would be worse than none.
+        No camera sees points below the robot itself, such as zeros that a driver appends.
         """
         seen_m = np.array((points.x_m, points.y_m)).T
+        seen_m = seen_m[(np.abs(seen_m) > _LEAST_M).any(axis=1)]
         age_s = self.clock.since_s(points.capture_us) if points.capture_us else 0.0
         if age_s < -_AHEAD_S or (self._last is None and age_s > _SHORT_S):
             return _NOTHING
@@ -214,15 +217,16 @@ class Localization(Component):
             return Motion(0.0, 0.0, 0.0, 0.0)
         before, passed_s = self._last or now, self.clock.since_s(self._last_us)
         self._last, self._last_us = now, self.clock.now_us
-        turn_rad = now.heading_rad - before.heading_rad
+        turn_rad = wrap_rad(now.heading_rad - before.heading_rad)
         self._turning_rad_s = now.omega_rad_s if plausible(now.omega_rad_s) else 0.0
         way_m = rotation(-before.heading_rad - turn_rad / 2) @ (now.x_m - before.x_m, now.y_m - before.y_m)
-        if np.hypot(*way_m) > _FASTEST_M_S * max(passed_s, self.clock.period_s):
-            return Motion(0.0, 0.0, 0.0, 0.0)  # the driver restarted: its frame has moved, not the robot
+        longest_s = max(passed_s, self.clock.period_s)
+        if np.hypot(*way_m) > FASTEST_M_S * longest_s or abs(turn_rad) > FASTEST_RAD_S * longest_s:
+            way_m, turn_rad = np.zeros(2), 0.0  # the driver restarted: its frame has moved, not the robot
         if self._compass_rad() is not None:
             rate_rad_s = self.imu.value.yaw_rate_rad_s
             if before is not now:
-                turn_rad = (rate_rad_s + self._yaw_rate_rad_s) / 2 * passed_s
+                turn_rad = wrap_rad((rate_rad_s + self._yaw_rate_rad_s) / 2 * passed_s)
                 self._turning_rad_s = (rate_rad_s + self._yaw_rate_rad_s) / 2
             self._yaw_rate_rad_s = rate_rad_s
-        return Motion(float(way_m[0]), float(way_m[1]), wrap_rad(turn_rad), float(np.hypot(now.vx_m_s, now.vy_m_s)))
+        return Motion(float(way_m[0]), float(way_m[1]), turn_rad, float(np.hypot(now.vx_m_s, now.vy_m_s)))

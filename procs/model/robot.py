@@ -15,6 +15,9 @@ CYAN, MAGENTA = "cyan", "magenta"
 TEAM_NUMBERS = {CYAN: 1, MAGENTA: 2}
 """Number of each team in messages; 0 is none, or unknown."""
 
+FASTEST_M_S, FASTEST_RAD_S = 8.0, 15.0
+"""Speeds that no robot exceeds."""
+
 NUMBER_MAX = 2**31 - 1
 """Largest number of a robot; a greater one does not fit into messages."""
 

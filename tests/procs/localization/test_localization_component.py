@@ -1,6 +1,7 @@
 """Self-localization on simulated white points: accuracy, honesty, disturbances, determinism."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -199,3 +200,42 @@ def test_heading_stays_within_half_a_turn_while_searching() -> None:
     for _ in range(12):
         frames(bench, robot, 1)
         assert abs(bench.port("pose").sent[-1].heading_rad) <= math.pi
+
+
+GLITCHES: dict[str, tuple[str, dict[str, Any]]] = {
+    "gyro": ("imu", {"heading_rad": 0.5, "yaw_rate_rad_s": 40.0}),
+    "wheels that turn a robot": ("odometry", {"heading_rad": 2.0}),
+    "zeros in the place of points": ("line_points", {"x_m": [0.0] * 50, "y_m": [0.0] * 50}),
+}
+
+
+@pytest.mark.parametrize("glitch", GLITCHES)
+def test_reading_that_cannot_be_moves_no_robot(glitch: str) -> None:
+    """The robot has no compass while its wheels seem to turn it, so that no gyro tells better."""
+    bench, robot = Bench(Localization), FakeRobot(seed=23)
+    robot.pose = np.array((3.0, 2.0, 0.5))
+    assert until_localized(bench, robot, 5.0) < math.inf
+    port, reading = GLITCHES[glitch]
+    for tick in range(20):
+        robot.show(bench)
+        if port == "odometry":
+            bench.port("imu").waiting.clear()
+        if tick == 5:
+            bench.port(port).put(**reading)
+        bench.iterate()
+        assert bench.port("pose").sent[-1].localized
+        assert np.abs(robot.error(bench)).max() < 0.1
+
+
+def test_heading_of_wheels_may_wrap() -> None:
+    robot = FakeRobot(seed=23)
+    robot.pose = np.array((3.0, 2.0, 0.0))
+    robot.odometry = np.array((0.0, 0.0, 3.0))
+    bench = Bench(Localization, start_x_m=3.0, start_y_m=2.0, start_heading_rad=0.0)
+    frames(bench, robot, 5)
+    for _ in range(10):
+        robot.drive(np.array((2.0, 0.0, 1.0)))
+        x_m, y_m, heading_rad = robot.odometry.tolist()
+        bench.port("odometry").put(x_m=x_m, y_m=y_m, heading_rad=math.remainder(heading_rad, math.tau), vx_m_s=2.0)
+        bench.iterate()
+    assert np.hypot(*robot.error(bench)[:2]) < 0.1, "0.2 m less in the tick in which the heading wraps"
