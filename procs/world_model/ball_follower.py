@@ -8,7 +8,6 @@ import numpy as np
 from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import ball_percept_t, game_state_t, team_message_t
 from procs.model.frames import Floats
-from procs.model.geometry import plausible
 from procs.model.units import US_PER_S
 from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
@@ -23,6 +22,8 @@ from procs.world_model.team import Mate
 from procs.world_model.told import IN_MOUTH_M, ball_of, held_by
 from procs.world_model.walls import Walls
 
+_OUTSIDE_M = 3.0  # a ball this far outside the walls is another thing, however poorly it is seen
+_HIGHEST_M = 20.0  # no kick lifts a ball higher
 _IN_MOUTH_M2 = np.eye(2) * IN_MOUTH_M**2
 """Covariance of the place of a ball in the mouth."""
 
@@ -102,7 +103,7 @@ class BallFollower:
     def _take_placed_ball(self, game: game_state_t) -> None:
         """Takes the ball that the crew puts down in the tick after the state of the game says so."""
         spot_m = self._placed.spot_m(game, self.tracker)
-        if spot_m is not None:
+        if spot_m is not None and self._is_inside_walls(spot_m):
             self.tracker.put_down(spot_m)
 
     def _take_held_ball(self, view: OwnView) -> None:
@@ -117,7 +118,8 @@ class BallFollower:
         """Takes a percept of the ball, and keeps its likeliest place for the next message to the team."""
         config = self._config
         age_s = config.age_s(percept.capture_us, now_us)
-        seen = self.untold = view.ball(percept, age_s)
+        seen = view.ball(percept, age_s)
+        self.untold = seen if all(map(self._is_inside_walls, seen.positions_m)) else Seen.NOTHING
         sightings = []
         for candidate, height_m in ((seen, percept.z_m), *view.other_balls(percept, age_s)):
             widened = candidate.widened(config.sight_correlation, config.pose_correlation)
@@ -142,13 +144,18 @@ class BallFollower:
 
     def _sightings(self, robot: str, seen: Seen, height_m: float, observer_m: Floats, age_s: float) -> list[Sighting]:
         """Returns a sighting of the ball (0 or 1), unless it is too old, from the future or impossible."""
-        if not (counts(age_s) and plausible(height_m)):
+        if not (counts(age_s) and abs(height_m) < _HIGHEST_M and all(map(self._is_inside_walls, seen.positions_m))):
             return []
         own = robot == self._robot
         return [
             Sighting(robot, own, position_m, covariance_m2, age_s, height_m, observer_m)
             for position_m, covariance_m2 in zip(seen.positions_m, seen.covariances_m2, strict=True)
         ]
+
+    def _is_inside_walls(self, place_m: Floats) -> bool:
+        """Returns whether a ball (2) can be there: inside the walls, give or take the error of a poor sighting."""
+        field = self._config.field
+        return field.in_field(float(place_m[0]), float(place_m[1]), field.border_m + _OUTSIDE_M)
 
     def _see(self, sightings: list[Sighting]) -> None:
         """Passes the candidates for the ball in one frame to the tracker, the likeliest first."""

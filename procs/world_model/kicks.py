@@ -9,7 +9,6 @@ import numpy as np
 from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import team_message_t
 from procs.model.frames import Floats
-from procs.model.geometry import plausible
 from procs.model.units import US_PER_S
 from procs.world_model.own_view import OwnView
 from procs.world_model.seen import Seen
@@ -18,6 +17,7 @@ from procs.world_model.told import mouth_of
 
 _MESSAGES = 2  # number of messages that tell mates of a kick, because the radio may lose one
 _OLDEST_S = 0.5  # older kicks of mates are not used
+_FASTEST_M_S = 30.0  # more than the strongest kicker that the settings allow gives, on the fastest robot
 _TIME_SHARE = 0.3  # of a tick: deviation of a kick's time, which lies somewhere in it; the root of 1/12 is 0.29
 
 
@@ -65,7 +65,7 @@ class Kicks:
             known is None
             or kicker.kicks <= known
             or not view.localized
-            or not plausible(kicker.kick_speed_m_s, _lift_m_s(kicker))
+            or not _is_possible(kicker.kick_speed_m_s, _lift_m_s(kicker))
         ):
             return None
         self._messages = _MESSAGES
@@ -89,12 +89,17 @@ class Kicks:
             known = self._of_mates.get(mate.name, message.kicks)
             self._of_mates[mate.name] = message.kicks
             age_s = (now_us - message.kick_us) / US_PER_S
-            sound = plausible(message.kick_vx_m_s, message.kick_vy_m_s, message.kick_vz_m_s)
+            sound = _is_possible(message.kick_vx_m_s, message.kick_vy_m_s, message.kick_vz_m_s)
             if message.kicks > known and mate.localized and sound and 0.0 <= age_s <= _OLDEST_S:
                 mouth = mouth_of(mate, mouth_m, message.kick_us / US_PER_S)
                 velocity_m_s = np.array((message.kick_vx_m_s, message.kick_vy_m_s))
                 found.append(Kick(velocity_m_s, message.kick_vz_m_s, age_s, _TIME_SHARE * tick_s, mouth))
         return found
+
+
+def _is_possible(*velocity_m_s: float) -> bool:
+    """Returns whether a kick can give a ball such a velocity."""
+    return math.hypot(*velocity_m_s) < _FASTEST_M_S
 
 
 def _lift_m_s(kicker: kicker_state_t) -> float:

@@ -12,10 +12,12 @@ from procs.model.covariance import is_covariance
 from procs.model.frames import Floats, rotation, to_world
 from procs.model.geometry import plausible, wrap_rad
 from procs.model.nearest import nearest
+from procs.model.robot import FASTEST_M_S, FASTEST_RAD_S
 from procs.world_model.seen import MOST_OBSTACLES, Seen
 from procs.world_model.team import Mate, PlaceRow
 
-_FASTEST = (8.0, 8.0, 15.0)  # m/s, m/s, rad/s: a pose that changes faster was corrected
+_FASTEST = (FASTEST_M_S, FASTEST_M_S, FASTEST_RAD_S)  # a pose that changes faster was corrected
+_MOST_BALLS = 20  # candidates of a frame that count besides the likeliest: more would take the time of the tick
 _TRAIL_S = 0.5  # poses are kept for the age of the oldest sightings that count
 _ROLLS_IN_M_S = 0.5  # a ball that rolls in more slowly counts as held
 
@@ -60,7 +62,7 @@ class OwnView:
         self.localized = pose.localized and known and sound
         self.pose = np.array((pose.x_m, pose.y_m, pose.heading_rad)) if sound else np.zeros(3)
         self.covariance = np.array(pose.covariance) if sound else np.zeros((3, 3))
-        moves = plausible(odometry.vx_m_s, odometry.vy_m_s, odometry.omega_rad_s)
+        moves = _is_possible((odometry.vx_m_s, odometry.vy_m_s, odometry.omega_rad_s))
         velocity_m_s = (odometry.vx_m_s, odometry.vy_m_s) if moves else (0.0, 0.0)
         self.velocity_m_s = rotation(float(self.pose[2])) @ velocity_m_s
         self.omega_rad_s = odometry.omega_rad_s if moves else 0.0
@@ -68,7 +70,7 @@ class OwnView:
         former: tuple[_Past, ...] = ()
         if before is not None and before.localized and self.localized and passed_s > 0.0:
             turned = _rates(before.pose, self.pose, passed_s)
-            if all(abs(rate) < fastest for rate, fastest in zip(turned, _FASTEST, strict=True)):
+            if _is_possible(turned):
                 rates, self.omega_rad_s = turned, turned[2]
                 former = tuple(past.older(passed_s) for past in before.trail if past.age_s + passed_s <= _TRAIL_S)
         self.trail: tuple[_Past, ...] = (_Past(0.0, self.pose, np.array(rates)), *former)
@@ -81,7 +83,8 @@ class OwnView:
 
     def other_balls(self, percept: ball_percept_t, age_s: float) -> list[tuple[Seen, float]]:
         """Returns the less likely balls of a percept captured `age_s` ago, each (0 or 1) with its height in m."""
-        return [(self._candidate(other, age_s), other.z_m) for other in percept.others] if self.localized else []
+        others = percept.others[:_MOST_BALLS] if self.localized else []
+        return [(self._candidate(other, age_s), other.z_m) for other in others]
 
     def _candidate(self, ball: ball_percept_t | ball_candidate_t, age_s: float) -> Seen:
         return self._from_here(Seen.of([(ball.x_m, ball.y_m)], [ball.covariance_m2], [0.0]), age_s)
@@ -172,6 +175,11 @@ class OwnView:
         pose = self._at(age_s)
         shaken_m2 = seen.by_sight_m2 * self._shake
         return Seen(*to_world(pose, self.covariance, seen.positions_m, shaken_m2), seen.radii_m)
+
+
+def _is_possible(rates: tuple[float, float, float]) -> bool:
+    """Returns whether a robot can move along x and y, and turn, so fast (m/s, m/s, rad/s)."""
+    return all(abs(rate) < fastest for rate, fastest in zip(rates, _FASTEST, strict=True))
 
 
 def _rates(before: Floats, now: Floats, passed_s: float) -> tuple[float, float, float]:

@@ -1,11 +1,14 @@
 """Reads the messages of team mates."""
 
+import math
+
 import numpy as np
 
 from lcmtypes.soccer import team_message_t
 from procs.model.covariance import is_covariance
 from procs.model.frames import Floats
 from procs.model.geometry import plausible, wrap_rad
+from procs.model.robot import FASTEST_M_S
 from procs.model.units import US_PER_S
 from procs.world_model.seen import MOST_OBSTACLES, Seen
 from procs.world_model.team import Mate
@@ -19,7 +22,8 @@ def mate_of(message: team_message_t, now_s: float) -> Mate | None:
     """Returns the state of the sender; None if the message has no name, is from the future or has impossible values."""
     values = (message.x_m, message.y_m, message.heading_rad, message.vx_m_s, message.vy_m_s)
     told_s = message.header.time_us / US_PER_S
-    if not message.robot or told_s > now_s or not plausible(*values) or not is_covariance(message.pose_covariance):
+    sound = plausible(*values) and math.hypot(message.vx_m_s, message.vy_m_s) < FASTEST_M_S
+    if not (message.robot and told_s <= now_s and sound and is_covariance(message.pose_covariance)):
         return None
     return Mate(
         name=message.robot,

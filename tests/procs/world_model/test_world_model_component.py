@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 import pytest
 
-from lcmtypes.soccer import obstacle_t, robot_estimate_t, team_message_t
+from lcmtypes.soccer import ball_candidate_t, obstacle_t, robot_estimate_t, team_message_t
 from procs.world_model.seen import Seen
 from tests.procs.world_model.team_on_bench import PERIOD_S, Floats, Robot, team
 
@@ -311,3 +312,62 @@ def test_settings_show_what_exposure_times_and_velocity_bring() -> None:
     behind_m = y_m - followed_ball(use_capture_times=False)[0]
     assert behind_m == pytest.approx(0.05 * vy_m_s, abs=0.03)
     assert followed_ball(use_ball_velocity=False) == (y_m, 0.0)
+
+
+NEAR = [[1e-4, 0.0], [0.0, 1e-4]]
+
+
+@pytest.mark.parametrize(
+    ("own", "mate"),
+    [
+        pytest.param({"visible": True, "x_m": 30.0, "covariance_m2": NEAR}, {}, id="ball of the own camera outside"),
+        pytest.param({}, {"ball_visible": True, "ball_x_m": 90.0, "ball_covariance_m2": NEAR}, id="of a mate outside"),
+        pytest.param({"visible": True, "x_m": 2.0, "z_m": 500.0, "covariance_m2": NEAR}, {}, id="ball in the clouds"),
+        pytest.param({}, {"ball_held": True, "vx_m_s": 900.0}, id="mate too fast"),
+    ],
+)
+def test_ball_that_cannot_be_is_not_known(own: dict[str, Any], mate: dict[str, Any]) -> None:
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for _ in range(5):
+        robot.sense(None, [])
+        robot.bench.port("ball_percept").put(**own)
+        told = team_message_t(robot="cyan2", localized=True, x_m=3.0, **mate)
+        told.header.time_us = robot.bench.time_us
+        robot.bench.port("team_inbox").put(messages=[told])
+        robot.bench.iterate()
+        assert not robot.world.ball.known
+    assert not any(
+        message.ball_visible and message.ball_x_m > 20.0 for message in robot.bench.port("team_message").sent
+    )
+
+
+@pytest.mark.parametrize("by_mate", [False, True])
+def test_kick_that_no_robot_can_give_is_ignored(by_mate: bool) -> None:
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for tick in range(30):
+        robot.sense(np.array((2.0, 0.0)) if tick < 25 else None, [])
+        kicks, told = int(tick >= 25), team_message_t(robot="cyan2", localized=True, x_m=-3.0)
+        told.header.time_us = robot.bench.time_us
+        if by_mate:
+            told.kicks, told.kick_us, told.kick_vx_m_s = kicks, robot.bench.time_us, 900.0
+        else:
+            robot.bench.port("kicker_state").put(kicks=kicks, kick_speed_m_s=900.0)
+        robot.bench.port("team_inbox").put(messages=[told])
+        robot.bench.iterate()
+    assert (robot.world.ball.x_m, robot.world.ball.y_m) == pytest.approx((2.0, 0.0), abs=0.1)
+    assert robot.bench.port("team_message").sent[-1].kicks == 0
+
+
+def test_many_candidates_cost_no_more_than_the_first() -> None:
+    """The ball is the last of 500 things in a frame that seem less likely: those after the first 20 do not count."""
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for _ in range(10):
+        robot.sense(np.array((2.0, 0.0)), [])
+        robot.bench.iterate()
+    others = [ball_candidate_t(x_m=-0.01 * number, y_m=5.0, covariance_m2=NEAR) for number in range(499)]
+    others.append(ball_candidate_t(x_m=2.0, covariance_m2=NEAR))
+    robot.sense(None, [])
+    robot.bench.port("ball_percept").put(visible=True, x_m=-3.0, covariance_m2=NEAR, others=others)
+    robot.bench.iterate()
+    assert robot.world.ball.age_s > 0.0
+    assert (robot.world.ball.x_m, robot.world.ball.y_m) == pytest.approx((2.0, 0.0), abs=0.1)
