@@ -24,6 +24,15 @@ class FramePace:
         self._exposures_us.append(exposed_us)
 
     @property
+    def interval_s(self) -> float:
+        """Time from one exposure to the next; 0: not known."""
+        return self._interval_us / US_PER_S
+
+    @property
     def next_s(self) -> float:
         """Time after an exposure within which the next one comes, give or take a lost frame; 0: not known."""
-        return _LATE * min((after - before for before, after in pairwise(self._exposures_us)), default=0) / US_PER_S
+        return _LATE * self._interval_us / US_PER_S
+
+    @property
+    def _interval_us(self) -> int:
+        return min((after - before for before, after in pairwise(self._exposures_us)), default=0)

@@ -69,6 +69,7 @@ class WorldModel(Component):
         self._opponents = RobotTracks()
         self._silent = RobotTracks()  # mates that do not state their places
         self._frames = FramePace()  # of the camera that sees the obstacles
+        self._percepts = FramePace()  # of percepts of the ball, in the ticks in which they come
         self._apply_settings()
         self._team = Team()
         self._view: OwnView | None = None
@@ -143,6 +144,8 @@ class WorldModel(Component):
     ) -> None:
         """Tracks the ball, and notes a kick and the newest percept for the next message to the team."""
         percept = self.ball_percept.value if self.ball_percept.refreshed else None
+        if percept:
+            self._percepts.note(self.clock.now_us)
         news = BallNews(
             now_us=self.clock.now_us,
             passed_s=passed_s,
@@ -202,18 +205,17 @@ class WorldModel(Component):
     def _message_due(self) -> bool:
         """Returns whether to send a message now: once a period, preferably in a tick with a new frame of the camera.
 
-        A message may come half a tick early, which rounds the period to the nearest tick. If the tick has no new frame,
-        the message waits one tick for it. From then on messages keep the pace of the camera, and mates get sightings as
-        early as possible.
+        Messages go with the frame of the camera that is nearest to the period: up to half of the time between frames
+        early. If the tick has no new frame, the message waits one tick for it. From then on messages keep the pace of the
+        camera, and mates get sightings as early as possible.
         """
         caught_or_lost = self.team_message.value.ball_held != self._holds
         if caught_or_lost or self._ball.kicks.untold:
             return True  # mates need to know at once
-        half_tick_s = self.clock.iteration_s / 2
-        passed_s = self.clock.since_s(self._sent_us) + half_tick_s
+        iteration_s, passed_s = self.clock.iteration_s, self.clock.since_s(self._sent_us)
         if not self.ball_percept.refreshed:
-            passed_s -= self.clock.iteration_s
-        return passed_s >= self.config.message_period_s
+            return passed_s - iteration_s / 2 >= self.config.message_period_s
+        return passed_s + max(iteration_s, self._percepts.interval_s) / 2 >= self.config.message_period_s
 
     def _tell_team(self, view: OwnView) -> None:
         """Sends the own state with the newest own sightings, each once."""

@@ -160,6 +160,21 @@ def test_a_crowd_costs_no_more_than_its_nearest_fifty() -> None:
     assert 0 < len(robot.world.opponents) <= 50
 
 
+@pytest.mark.parametrize(("period_s", "every"), [(0.04, 2), (0.02, 4), (0.01, 8), (0.1, 1), (0.05, 2), (0.02, 2)])
+def test_messages_go_with_frames_at_every_tick_rate(period_s: float, every: int) -> None:
+    """A camera of 10, 12.5 or 25 frames a second; the message has the sighting of its own tick."""
+    robot = Watching(period_s=period_s)
+    for tick in range(round(2.0 / period_s)):
+        if tick % every == 0:
+            robot.see_ball(2.0, 1.0)
+        robot.tick()
+    told = robot.bench.port("team_message").sent[2:]
+    assert all(message.ball_visible for message in told)
+    assert {message.header.time_us - message.ball_capture_us for message in told} == {35_000}
+    between_s = (told[-1].header.time_us - told[0].header.time_us) / (len(told) - 1) / 1e6
+    assert 0.079 < between_s < 0.121, "0.1 s, by the nearest frame"
+
+
 def test_impossible_height_is_not_told_to_the_team() -> None:
     robot = Watching()
     for z_m in (0.2, math.inf):
