@@ -3,6 +3,7 @@
 A filter that uses all that its measurements tell leaves innovations that do not depend on each other: white ones.
 """
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -13,7 +14,7 @@ from procs.evaluation.piece import Piece
 from procs.model.frames import Floats, to_world
 
 _GATE = 13.8  # chi-square, 2 degrees of freedom, 99.9 %: beyond it the ball was kicked, or another one was seen
-_NEXT = 3.0  # ticks from one frame to the next, at most
+_NEXT_S = 0.12  # from one frame to the next, at most
 
 
 def innovations(piece: Piece) -> Samples:
@@ -21,7 +22,8 @@ def innovations(piece: Piece) -> Samples:
     products: list[tuple[float, float]] = []
     before: tuple[Frame, Floats] | None = None
     for frame, innovation in _innovations(piece):
-        if before is not None and before[0].robot == frame.robot and frame.exposed - before[0].exposed <= _NEXT:
+        between_s = (frame.exposed - before[0].exposed) * piece.period_s if before is not None else math.inf
+        if before is not None and before[0].robot == frame.robot and between_s <= _NEXT_S + 1e-9:
             former = before[1]
             squares = float(former @ former + innovation @ innovation) / 2
             products.append((float(former @ innovation), squares))

@@ -128,6 +128,20 @@ def believing_piece(errors_m: list[float]) -> Piece:
     return made
 
 
+@pytest.mark.parametrize(("period_s", "every", "products"), [(0.01, 8, 3), (0.04, 2, 18), (0.1, 1, 38), (0.05, 4, 0)])
+def test_successive_innovations_are_frames_up_to_012_s_apart(
+    period_s: float, every: int, products: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("procs.evaluation.exposures.START_S", 0.0)
+    piece = believing_piece([0.1])
+    piece.period_s = period_s
+    percept = seeing(2.1, 0.0)
+    percept.capture_us = percept.header.time_us - round(period_s * 1e6)
+    piece.by_robot["ball_percept"] = {"cyan1": dict.fromkeys(TICKS[::every], percept)}
+    (found,) = innovations(piece).values()
+    assert len(found) == products
+
+
 @pytest.mark.parametrize(("errors_m", "correlation"), [([0.1, 0.1], 1.0), ([0.1, -0.1], -1.0), ([0.1, 9.0], 1.0)])
 def test_innovations_that_repeat_are_correlated(errors_m: list[float], correlation: float) -> None:
     """Frames with another ball, which no filter would use, do not count."""
