@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
-from enum import Enum
+from enum import StrEnum
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
@@ -22,7 +22,7 @@ from fwk.plan.load import LaunchOptions, load_plan
 from fwk.program import BAD_INPUT, notice
 
 
-class Form(Enum):
+class Form(StrEnum):
     """Form in which the graph is written."""
 
     TEXT = "text"
