@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from fwk.cli.output import say
 from fwk.display.table import Column, Table, terminal_width
-from fwk.program import imported, run_program
+from fwk.program import BAD_INPUT, complain, imported, run_program
 
 HIDDEN = "__complete"
 """First word of the calls that the shells' completion makes."""
@@ -38,7 +38,7 @@ def run(words: list[str]) -> int | None:
         return 0
     if not words or words[0] in ("--help", "-h"):
         say(help_text())
-        return 0 if words else 2
+        return 0 if words else BAD_INPUT
     if words[0] == "--version":
         from fwk.cli.version import version
 
@@ -48,6 +48,11 @@ def run(words: list[str]) -> int | None:
     if thin:
         imported()
         return thin()
+    from fwk.cli.unknown import mistake
+
+    if wrong := mistake(words):
+        complain(wrong)
+        return BAD_INPUT
     from fwk.cli.commands import app
 
     imported()
