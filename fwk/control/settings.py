@@ -16,8 +16,8 @@ from fwk.component.meanings import meanings_of
 from fwk.control.requests import RequestError
 from fwk.model.errors import PlanError, Problems
 from fwk.model.plan import ComponentPlan, Plan
-from fwk.model.selection import matches, nearest
-from fwk.plan.files.overrides import PLACE, SHARED, overrides
+from fwk.model.selection import component_below, matches, nearest
+from fwk.plan.files.overrides import EXAMPLE, PLACE, RUN_KEYS, SHARED, overrides
 from fwk.plan.files.settings import effective
 from fwk.plan.files.source import Node
 
@@ -61,7 +61,7 @@ class RunSettings:
         found = [row for component in concerned for row in self._rows_of(component)]
         for pattern in patterns:
             if not any(_means(pattern, row) for row in found):
-                raise RequestError(f"no setting '{pattern}'; {self._nearest(pattern)}")
+                raise RequestError(self._unknown(pattern))
         return [row for row in found if not patterns or any(_means(pattern, row) for pattern in patterns)]
 
     def changed(self, components: Sequence[int]) -> dict[str, str]:
@@ -77,18 +77,24 @@ class RunSettings:
         """
         problems = Problems()
         for text in sets:
-            if "." not in text.partition("=")[0]:
-                problems.add("", "", f"'{text}' is not NAME.SETTING=VALUE; values of the run as a whole cannot change")
+            path = text.partition("=")[0]
+            if "." not in path:
+                right = "values of the run as a whole cannot change" if path in RUN_KEYS else EXAMPLE
+                problems.add("", "", f"'{text}' is not NAME.SETTING=VALUE; {right}")
             elif text.startswith(f"{SHARED}."):
                 problems.add("", "", f"'{text}' changes nothing; name the components that have it: NAME.SETTING=VALUE")
         typed = overrides([text for text in sets if "." in text.partition("=")[0]], problems)
         changes = typed.at("config").value if typed.child("config") else {}
+        names = [component.name for component in self._plan.components]
+        for pattern in list(changes):
+            if name := component_below(pattern, changes[pattern].value, names):
+                problems.add("", "", f"'{pattern}' is not a component; did you mean '{name}'?")
+                del changes[pattern]
         found = [
             made
             for component in self._plan.components
             if (made := self._check_component(component, _layers(component.name, changes), problems))
         ]
-        names = [component.name for component in self._plan.components]
         for pattern in changes:
             if not any(matches(name, pattern) for name in names):
                 problems.add("", "", f"no component '{pattern}'; {nearest(pattern, names)}")
@@ -149,13 +155,22 @@ class RunSettings:
             for name, origin in self._origins[component.index].items()
         ]
 
-    def _nearest(self, pattern: str) -> str:
+    def _unknown(self, pattern: str) -> str:
+        """Returns what is wrong with a pattern that matches no setting."""
         name, _, setting = pattern.partition(".")
         meant = [each for each in self._plan.components if matches(each.name, name)]
         own = dict.fromkeys(dotted for each in meant for dotted in self._origins[each.index])
+        if below := component_below(name, setting.split(".")[:1], [each.name for each in meant]):
+            return f"'{name}' is not a component; did you mean '{below}'?"
         if setting and own:
-            return nearest(setting, list(own))
-        return nearest(name, [each.name for each in self._plan.components if self._origins[each.index]])
+            return f"no setting '{pattern}'; {nearest(setting, list(own))}"
+        if meant:
+            return f"'{name}' has no settings"
+        of = (f"{each.name}.{dotted}" for each in self._plan.components for dotted in self._origins[each.index])
+        whole = next((each for each in of if each.endswith(f".{pattern}")), "")
+        names = [each.name for each in self._plan.components if self._origins[each.index]]
+        right = f"did you mean '{whole}'?" if whole else nearest(name, names)
+        return f"no component '{name}'; {right}"
 
 
 def _means(pattern: str, row: dict[str, Any]) -> bool:

@@ -88,7 +88,8 @@ def hint(word: str, known: Iterable[str] | Mapping[str, object], otherwise: str 
     names = sorted(known)
     # a common namespace or package alone would make names alike
     own = [name for name in names if get_close_matches(_last_part(word), [_last_part(name)], 1)]
-    near = get_close_matches(word, own, 1)
+    same = [name for name in own if _last_part(name) == word]  # the whole word lacks its namespace
+    near = same or get_close_matches(word, own, 1)
     if near:
         return f"did you mean '{near[0]}'?"
     more = ", ..." if len(names) > _LISTED else ""

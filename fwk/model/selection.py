@@ -1,6 +1,6 @@
 """Selection of components by patterns, in settings, hosts, `--only` and `--without`."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
 
 from fwk.model.errors import Problems, hint
@@ -15,6 +15,12 @@ def nearest(pattern: str, names: Sequence[str]) -> str:
     """Returns a hint for a pattern that selects no component."""
     namespaces = [name.rpartition("/")[0] for name in names if "/" in name]
     return hint(pattern, dict.fromkeys(names if "/" in pattern else [*namespaces, *names]))
+
+
+def component_below(pattern: str, keys: Iterable[str], names: Sequence[str]) -> str:
+    """Returns the component that is meant by `pattern.key`, with a dot for the slash; empty if none is."""
+    below = (f"{pattern}/{key}" for key in keys)
+    return next((each for each in below if any(matches(name, each) for name in names)), "")
 
 
 def chosen(names: Sequence[str], only: Sequence[str], without: Sequence[str], problems: Problems) -> list[str]:

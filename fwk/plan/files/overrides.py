@@ -9,6 +9,7 @@ from fwk.plan.files.source import Node, read_value
 PLACE = "--set"
 SHARED = "shared"
 """Section of a launch file whose settings go to every component that has them."""
+EXAMPLE = "write for example cyan1/omni_ball.gain=0.5"
 RUN_KEYS = ("period_s", "clock", "speed", "seed", "stage_time_s", "loop_time_s", "loop_time_warnings", "public_url")
 
 
@@ -22,9 +23,10 @@ def overrides(sets: Sequence[str], problems: Problems) -> Node:
         path, equals, value = text.partition("=")
         component, dot, setting = path.partition(".")
         if not equals or not path or (dot and not setting):
-            problems.add(PLACE, "", f"'{text}' is not a PATH=VALUE; write for example cyan1/omni_ball.gain=0.5")
+            problems.add(PLACE, "", f"'{text}' is not a PATH=VALUE; {EXAMPLE}")
         elif not dot and path not in RUN_KEYS:
-            right = "write NAME.SETTING=VALUE" if "/" in path else hint(path, RUN_KEYS)
+            whole = f"the run has {', '.join(RUN_KEYS)}; write {SHARED}.{path} or NAME.{path} for components"
+            right = "write NAME.SETTING=VALUE" if "/" in path else hint(path, RUN_KEYS, whole)
             problems.add(PLACE, "", f"no setting '{path}'; {right}")
         else:
             node = read_value(value, PLACE, problems)

@@ -131,7 +131,10 @@ def test_a_restarted_process_gets_the_changes_to_the_plan(settings: RunSettings)
         (["a/turner.gain=true"], "it should be a number"),
         (["a/turnr.gain=1"], "no component 'a/turnr'; did you mean 'a/turner'?"),
         (["c/plain.gain=1"], "c/plain: no setting 'gain'; there is log_level"),
-        (["speed=2"], "'speed=2' is not NAME.SETTING=VALUE"),
+        (["speed=2"], "'speed=2' is not NAME.SETTING=VALUE; values of the run as a whole cannot change"),
+        (["gain=2"], "'gain=2' is not NAME.SETTING=VALUE; write for example cyan1/omni_ball.gain=0.5"),
+        (["turner.gain=2"], "no component 'turner'; did you mean 'a/turner'?"),
+        (["b.turner.gain=2"], "'b' is not a component; did you mean 'b/turner'?"),
         (["shared.gain=2"], "'shared.gain=2' changes nothing; name the components that have it: NAME.SETTING=VALUE"),
         (
             ["a/turner.inner={}"],
@@ -160,7 +163,13 @@ def test_all_mistakes_come_at_once(settings: RunSettings) -> None:
 
 @pytest.mark.parametrize(
     ("pattern", "error"),
-    [("a/turnr", "did you mean 'a/turner'?"), ("a/turner.gian", "did you mean 'gain'?"), ("x.y", "no setting 'x.y'")],
+    [
+        ("a/turnr", "no component 'a/turnr'; did you mean 'a/turner'?"),
+        ("a/turner.gian", "no setting 'a/turner.gian'; did you mean 'gain'?"),
+        ("x.y", "no component 'x'; there are"),
+        ("gain", "no component 'gain'; did you mean 'a/turner.gain'?"),
+        ("a.turner.gain", "'a' is not a component; did you mean 'a/turner'?"),
+    ],
 )
 def test_an_unknown_setting_is_named_with_the_nearest(settings: RunSettings, pattern: str, error: str) -> None:
     with pytest.raises(RequestError, match=re.escape(error)):

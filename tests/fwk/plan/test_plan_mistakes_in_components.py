@@ -173,6 +173,21 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
     ),
     Broken(
         """
+        it.yaml:4: 'it' is not a component; did you mean 'it/a'?
+        it.yaml:5: 'i*' is not a component; did you mean 'i*/b'?
+        it.yaml:6: no component 'a'; did you mean 'it/a'?
+        """,
+        """
+        components: {it/a: {use: plan_parts:Keyed, config: {key: x}}, it/b: {use: plan_parts:Odometer}}
+        shared: {}
+        config:
+          it: {a: {key: y}}
+          "i*": {b: {gain: 1}}
+          a: {key: y}
+        """,
+    ),
+    Broken(
+        """
         --set: 'it/a.key' is not a PATH=VALUE; write for example cyan1/omni_ball.gain=0.5
         --set: no setting 'seeed'; did you mean 'seed'?
         --set: no setting 'it/a'; write NAME.SETTING=VALUE
@@ -187,6 +202,13 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
 )
 def test_settings(folder: Path, broken: Broken) -> None:
     assert said(broken, folder) == expected(broken)
+
+
+def test_setting_without_its_component_is_explained(folder: Path) -> None:
+    keyed = Broken("", "components: {it/a: {use: plan_parts:Keyed, config: {key: x}}}", {"sets": ["key=y"]})
+    (line,) = said(keyed, folder)
+    assert line.startswith("--set: no setting 'key'; the run has period_s, ")
+    assert line.endswith("; write shared.key or NAME.key for components")
 
 
 @rows(
