@@ -103,6 +103,8 @@ def _replayed(
         for text in notes:
             typer.echo(f"{log}: {text}", err=True)
         run(done)
+        if verify and from_tick > done.tick:
+            raise RecordingError(f"{log}: nothing was compared: no tick {from_tick}; the last one is {done.tick}")
     except RecordingError as error:
         typer.echo(f"error: {error}", err=True)
         return UNUSABLE

@@ -9,6 +9,7 @@ from fwk.component.component import Component
 from fwk.component.declaration import Declaration, declaration
 from fwk.component.port import DeclarationError
 from fwk.model.plan import ComponentPlan
+from fwk.model.selection import nearest
 from fwk.recording.replay.recording import Recording, RecordingError
 
 
@@ -26,7 +27,7 @@ def with_classes(recording: Recording, classes: Mapping[str, str]) -> None:
     changed = list(plan.components)
     for name, word in classes.items():
         if name not in names:
-            raise RecordingError(f"--with {name}: no such component in this run; there are: {', '.join(names)}")
+            raise RecordingError(f"--with {name}: no such component in this run; {nearest(name, list(names))}")
         component = names[name]
         try:
             kind = _class(word)

@@ -88,6 +88,11 @@ class Replay:
         return self._lives.left_out
 
     @property
+    def tick(self) -> int:
+        """The newest tick that was replayed; 0: none."""
+        return self._now
+
+    @property
     def compared(self) -> int:
         """Number of messages that were compared."""
         return self._comparison.compared

@@ -2,7 +2,6 @@
 
 from collections.abc import Container, Sequence
 from dataclasses import dataclass, field
-from fnmatch import fnmatchcase
 from importlib import import_module
 from typing import Any
 
@@ -12,6 +11,7 @@ from fwk.component.declaration import Declaration, declaration
 from fwk.lcm.envelope import fingerprint
 from fwk.lcm.messages import MessageError, type_named
 from fwk.model.plan import ComponentPlan
+from fwk.model.selection import matches, nearest
 from fwk.recording.replay.guard import Guard, ReachesOutsideError
 from fwk.recording.replay.recording import Recording, RecordingError
 
@@ -83,10 +83,10 @@ class _Choosing:
         self._channels = {channel.name: channel for channel in recording.plan.channels}
 
     def meant(self, pattern: str) -> set[int]:
-        found = {each.index for each in self._components if fnmatchcase(each.name, pattern)}
+        found = {each.index for each in self._components if matches(each.name, pattern)}
         if not found:
-            names = ", ".join(each.name for each in self._components)
-            raise RecordingError(f"{self._recording.path}: no component '{pattern}' in this run; there are: {names}")
+            right = nearest(pattern, [each.name for each in self._components])
+            raise RecordingError(f"{self._recording.path}: no component '{pattern}' in this run; {right}")
         return found
 
     def add(self, found: set[int]) -> None:

@@ -80,7 +80,10 @@ def test_what_prevents_a_branch_is_explained(tmp_path: Path) -> None:
     recording(tmp_path, orchestra, "orchestra.yaml")
     for words, reason in (
         (["--set", "d/player.bursty=0"], "error: --set: d/player: no setting 'bursty'; did you mean 'bursts'?"),
-        (["--with", "d/players=player:Player"], "error: --with d/players: no such component in this run; there are: "),
+        (
+            ["--with", "d/players=player:Player"],
+            "error: --with d/players: no such component in this run; did you mean 'd/player'?",
+        ),
         (["--with", "d/player=player:Conductor"], "error: --with d/player=player:Conductor: its ports are none, those"),
         (["--with", "d/player=player:Nobody"], "AttributeError: module 'player' has no attribute 'Nobody'"),
         (["--with", "d/player"], "error: --with d/player: write NAME=module:Class"),

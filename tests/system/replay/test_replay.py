@@ -102,6 +102,15 @@ def test_replay_names_the_first_difference_of_a_changed_class(
     assert "different: 4 of " in replayed(recorded, "--only", "d/*", "--from-tick", "27", code=1)
 
 
+def test_replay_of_nothing_is_refused(recorded: Path) -> None:
+    said = replayed(recorded, "--only", "d", "--from-tick", "31", code=2)
+    assert "log.lcm: nothing was compared: no tick 31; the last one is 30" in said
+    assert "no component 'd/plaier' in this run; did you mean 'd/player'?" in replayed(
+        recorded, "--only", "d/plaier", code=2
+    )
+    assert "equal: " in replayed(recorded, "--only", "d", "--from-tick", "30")
+
+
 def test_verify_names_every_component_that_differs(recorded: Path) -> None:
     file = recorded / "player.py"
     since = "{'d': 9, 'c': 12}.get(self.name[0], 99)"
