@@ -14,6 +14,8 @@ from fwk.supervisor.host_process import HostProcess
 from fwk.supervisor.processes.hosts import Hosts
 from lcmtypes.core import plugin_request_t
 
+_NAMES_MAX = 5
+"""Number of components that a refusal names."""
 _STOPS = ("stop", "unload", "kill")
 _STARTS_AGAIN = ("start", "restart", "reload")
 _RUNNING = ("starting", "running", "waiting")
@@ -173,8 +175,10 @@ class Lifecycle(Generic[H]):
         for host, entry in entries.items():
             others = [self._name(index) for index in self._plan.hosts[host].components if index not in chosen]
             if others:
+                more = f" and {len(others) - _NAMES_MAX} more" if len(others) > _NAMES_MAX else ""
                 raise RequestError(
-                    f"the process '{entry.name}' holds {', '.join(others)} as well; {action} all of them, "
+                    f"the process '{entry.name}' holds {', '.join(others[:_NAMES_MAX])}{more} as well; "
+                    f"{action} all of them, "
                     "or give each component its own process with --hosting process"
                 )
 

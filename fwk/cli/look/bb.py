@@ -15,7 +15,7 @@ from fwk.clock import US_PER_S
 from fwk.control import runs
 from fwk.display.table import Column, Table
 from fwk.model.errors import hint
-from fwk.program import BAD_INPUT
+from fwk.program import BAD_INPUT, notice
 
 _ITEMS_SHOWN = 12
 _ROW_SHOWN = 4
@@ -46,6 +46,9 @@ def list_channels(
     if as_json:
         typer.echo(json.dumps(wanted, indent=2))
         return
+    for pattern in patterns or ():
+        if not any(fnmatchcase(row["channel"], pattern) for row in wanted):
+            notice(f"no channel matches '{pattern}'; {hint(pattern, [row['channel'] for row in rows])}")
     say_table(_table(wanted))
 
 

@@ -100,6 +100,8 @@ def _find(run_dir: Path | None, chosen: str | None) -> tuple[Path, Callable[[], 
 
 
 def _there(run_dir: Path) -> Path:
+    if not os.path.isdir(run_dir):
+        raise typer.BadParameter(f"{run_dir}: no such folder, and no run of this name; see 'fwk runs list'")
     if not any(os.path.isfile(each) for each in names(run_dir / FILE, 2)):
         right = "name a run directory; one of a plan with 'log: {json_lines: off}' has none"
         raise typer.BadParameter(f"{run_dir}: there is no {FILE} in it; {right}")

@@ -230,7 +230,9 @@ def _refused_by(folder: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise FolderError(f"--out {error.filename or folder}: {error.strerror or error}") from error
+        is_file = isinstance(error, (FileExistsError, NotADirectoryError))
+        reason = "it is not a folder; name one for the results" if is_file else error.strerror or error
+        raise FolderError(f"--out {error.filename or folder}: {reason}") from error
 
 
 def _digest(plan: Plan) -> str:

@@ -100,7 +100,7 @@ def test_changed_launch_file_is_another_campaign(launch: Path) -> None:
 
 def test_folder_that_cannot_be_is_named(launch: Path) -> None:
     code, _, said = evaluated(str(launch), "--seeds", "1", "--out", str(launch))
-    assert (code, said) == (2, f"error: --out {launch}: File exists\n")
+    assert (code, said) == (2, f"error: --out {launch}: it is not a folder; name one for the results\n")
 
 
 def test_overridden_settings_reach_each_run(launch: Path) -> None:

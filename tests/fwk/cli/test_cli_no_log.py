@@ -33,6 +33,15 @@ def message(channel, message, time_us):
 """
 
 
+def test_log_of_an_unknown_run_says_where_runs_are_listed() -> None:
+    result = CliRunner().invoke(app, ["log", "nobody"])
+    text = " ".join(result.output.replace("│", " ").split())
+    assert (result.exit_code, "nobody: no such folder, and no run of this name; see 'fwk runs list'" in text) == (
+        2,
+        True,
+    )
+
+
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "script.py").write_text(SCRIPT)

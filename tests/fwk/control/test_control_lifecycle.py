@@ -92,6 +92,14 @@ def test_impossible_requests_are_refused(
         steering.hosts(action, patterns)
 
 
+def test_refusal_names_a_few_of_many_components() -> None:
+    names = [f"r{number}/base" for number in range(9)]
+    many = plan_of(dict.fromkeys(names, Base), groups=[names])
+    reason = "holds r1/base, r2/base, r3/base, r4/base, r5/base and 3 more as well; stop all of them"
+    with pytest.raises(RequestError, match=re.escape(reason)):
+        Lifecycle(many, host_processes(many)).hosts("stop", ["r0/base"])
+
+
 def test_a_user_does_not_start_without_its_vision_master(
     steering: Lifecycle[HostProcess], table: list[HostProcess]
 ) -> None:

@@ -62,7 +62,7 @@ def test_status_and_top_show_every_component(run: Steered, ports: PortBlock) -> 
     parameters = run.ask("parameters", name="r/counter")["parameters"]
     assert [each["setting"] for each in parameters] == ["step", "hang", "log_level"]
     for verb, fields in (("kill", {"name": "r"}), ("watch_settings", {"names": ["r/none"]})):
-        with pytest.raises(RefusedError, match=r"no component 'r'|no setting 'r/none'"):
+        with pytest.raises(RefusedError, match=r"no component 'r'|no component 'r/none'"):
             run.ask(verb, **fields)
     run.ask("set", changes=["r/counter.step=2"])
     run.ask("kill", name="r/counter")
@@ -76,6 +76,7 @@ def test_the_blackboard_from_outside(run: Steered) -> None:
     assert rows["r/imu"]["type"] == "robot.imu_t"
     assert (rows["r/imu"]["writer"], rows["r/imu"]["readers"]) == ("r/counter", ["r/follower"])
     assert rows["r/imu"]["sequence"] >= 1
+    assert "note: no channel matches 'r/imi'; did you mean 'r/imu'?" in run.fwk("bb", "list", "r/imi")
     assert "heading_rad: " in run.fwk("bb", "show", "r/imu")
     assert "did you mean 'r/imu'?" in run.fwk("bb", "show", "r/imi", code=2)
     lines = [json.loads(line) for line in run.fwk("bb", "watch", "r/imu", "--count", "4", "--json").splitlines()]
