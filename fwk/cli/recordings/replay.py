@@ -103,8 +103,10 @@ def _replayed(
         for text in notes:
             typer.echo(f"{log}: {text}", err=True)
         run(done)
-        if verify and from_tick > done.tick:
-            raise RecordingError(f"{log}: nothing was compared: no tick {from_tick}; the last one is {done.tick}")
+        if verify and from_tick > done.newest_tick:
+            raise RecordingError(
+                f"{log}: nothing was compared: no tick {from_tick}; the last one is {done.newest_tick}"
+            )
     except RecordingError as error:
         typer.echo(f"error: {error}", err=True)
         return UNUSABLE

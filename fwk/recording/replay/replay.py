@@ -88,7 +88,7 @@ class Replay:
         return self._lives.left_out
 
     @property
-    def tick(self) -> int:
+    def newest_tick(self) -> int:
         """The newest tick that was replayed; 0: none."""
         return self._now
 
