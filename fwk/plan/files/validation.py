@@ -17,9 +17,15 @@ Path = tuple[str | int, ...]
 Report = Callable[[Path, str, str], None]
 """Takes a mistake: path of the value, place, text."""
 
-_NO_MAPPING = ("dict_type", "model_type", "model_attributes_type", "dataclass_type")
+_KINDS = {
+    **dict.fromkeys(("list_type", "tuple_type", "set_type", "frozen_set_type"), "it should be a list such as [1, 2]"),
+    **dict.fromkeys(
+        ("dict_type", "model_type", "model_attributes_type", "dataclass_type"),
+        "it should be a mapping with keys such as 'name: value'",
+    ),
+}
+"""What would be right, in the words of YAML, by pydantic's kind of mistake."""
 _UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
-_MAPPING = "it should be a mapping with keys such as 'name: value'"
 
 
 @dataclass(frozen=True)
@@ -108,11 +114,7 @@ def _text(model: type[BaseModel], node: Node, details: ErrorDetails, what: str) 
     if kind == "too_long":
         most, given = details["ctx"]["max_length"], _short(node.at(*location).plain())
         return f"'{_dotted(location)}' is {given}; it should have at most {most} values"
-    message = (
-        _MAPPING
-        if kind in _NO_MAPPING
-        else details["msg"].removeprefix("Value error, ").replace("Input should", "it should")
-    )
+    message = _KINDS.get(kind) or details["msg"].removeprefix("Value error, ").replace("Input should", "it should")
     path = _path(node, location)
     if not path:
         return f"the default of '{_dotted(location)}' does not fit: {message}" if location else message

@@ -36,6 +36,27 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """,
     ),
     Broken(
+        """
+        it.yaml:4: it/a: 'colour' is 5; it should be a list such as [1, 2]
+        it.yaml:5: it/a: 'names' is 'x'; it should be a list such as [1, 2]
+        """,
+        """
+        components:
+          it/a:
+            use: strange:Seer
+            config: {colour: 5,
+              names: x}
+        --- strange.py
+        from fwk import Component, Config
+        class Sight(Config):
+            colour: tuple[int, int] = (1, 2)
+            names: list[str] = []
+        class Seer(Component):
+            stage = "think"
+            config: Sight
+        """,
+    ),
+    Broken(
         "it.yaml:2: it/a: 'colour.0' is 300; it should be less than or equal to 179",
         """
         components:
