@@ -3,10 +3,14 @@
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
+import yaml
 
 from fwk import Component
+from fwk.component.declaration import declaration
+from fwk.plan.load import LaunchOptions, load_plan
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.replay.replay import Replay
 from procs.vision.calibration import MirrorConfig
@@ -18,17 +22,15 @@ pytestmark = pytest.mark.system
 
 TICKS = 30
 SIZE_PX = MirrorConfig().size_px
-ALONE = """
-include: {file}
-name: alone
-components:
-  cyan1/component: {{use: "{module}:{name}", config: {config}}}
-"""
-CONFIG = {"scenarios.crew": "{actions: [{place_ball: {x_m: 1.0, y_m: 0.5}}]}"}
+LINE_UP = {
+    "include": [str(LAUNCH / file) for file in ("msl-field.yaml", "msl-radio.yaml")],
+    "robots": {"team_cyan": {"use": "msl_radio", "values": {"team": "cyan"}}, "cyan1": {"use": "robot"}},
+}
+"""One robot with a radio, and the field."""
+CONFIG = {"scenarios.crew": {"actions": [{"place_ball": {"x_m": 1.0, "y_m": 0.5}}]}}
 """Settings of components that write nothing by default."""
-STILL = '  cyan1/still: {use: "procs.scenarios.dummy:Dummy"}\n'
-IN_AN_EMPTY_FIELD = {"scenarios.dummy": "", "scenarios.perfect_world": STILL}
-"""Components that write the same as others of a usual robot, and what they need besides."""
+WHOLE = ("scenarios.dummy",)
+"""Components that are all of a robot."""
 LATE = {"world_model.ball_spot": 110}
 """Components that write nothing in a short run, with the ticks that they need: the robot has to find the ball."""
 Recorded = Callable[[str, str, int], Path]
@@ -56,6 +58,17 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Recorded:
     return run
 
 
+def robot_with(component: type[Component]) -> dict[str, Any]:
+    """Returns the template of a robot with a component, instead of those that write the same: another agent, say."""
+    usual: dict[str, Any] = yaml.safe_load((LAUNCH / "msl-stereo.yaml").read_text())["templates"]["msl_robot_stereo"]
+    plan = load_plan(str(LAUNCH / "one-robot.yaml"), LaunchOptions())
+    own = {f"cyan1/{port.attribute}" for port in declaration(component).ports if port.writes}
+    rivals = {plan.components[each.writer].name.removeprefix("cyan1/") for each in plan.channels if each.name in own}
+    use = {"use": f"{component.__module__}:{component.__name__}", "config": CONFIG.get(label(component), {})}
+    kept = {} if label(component) in WHOLE else {key: entry for key, entry in usual.items() if key not in rivals}
+    return kept | {"component": use}
+
+
 @pytest.mark.parametrize("component", discovered(), ids=label)
 def test_a_component_replays_alone(
     recorded: Recorded, component: type[Component], monkeypatch: pytest.MonkeyPatch
@@ -64,11 +77,8 @@ def test_a_component_replays_alone(
     if used:
         log, name = recorded(used[0], "", ticks), used[1].name
     else:  # no launch file contains it: add it to a system of one robot
-        which = label(component)
-        file = LAUNCH / ("msl-field.yaml" if which in IN_AN_EMPTY_FIELD else "one-robot.yaml")
-        config, module, kind = CONFIG.get(which, "{}"), component.__module__, component.__name__
-        text = ALONE.format(file=file, module=module, name=kind, config=config)
-        log, name = recorded("alone.yaml", text + IN_AN_EMPTY_FIELD.get(which, ""), ticks), "cyan1/component"
+        text = yaml.safe_dump(LINE_UP | {"templates": {"robot": robot_with(component)}})
+        log, name = recorded("alone.yaml", text, ticks), "cyan1/component"
     monkeypatch.chdir(log.parent)
     if component.reaches_outside:
         with pytest.raises(RecordingError, match="it reaches outside"):
