@@ -106,7 +106,9 @@ class _Loading:
         stages = stages_of(files, problems)
         asked = expand(files, problems)
         if not asked and not files.gaps:
-            problems.add(str(files.path), "", "there is no component in it; name one under 'components:'")
+            only = any(layer.content.templates for layer in files.layers)
+            text = ", only templates; include it in a file with 'robots:'" if only else "; name one under 'components:'"
+            problems.add(str(files.path), "", f"there is no component in it{text}")
         add_settings(files, asked, problems)
         components = resolve(files, asked, stages, self.folders, problems)
         outside = outside_of(files, problems)

@@ -118,7 +118,8 @@ class Campaign:
             cure = "remove it if the results beside it are of this launch file and its settings"
             raise FolderError(f"{note} is damaged: {_flaw_of(old)}; {cure}, or choose another folder")
         elif json.loads(old) != json.loads(text) and not self._began_anew(note, text):
-            raise FolderError(f"{folder} holds another campaign: {old.decode()}; choose another folder")
+            differ = _differing(json.loads(old), json.loads(text))
+            raise FolderError(f"{folder} holds another campaign: {differ}; choose another folder")
 
     def _began_anew(self, note: Path, text: str) -> bool:
         """Begins this campaign in the place of another that has no result and is not played; returns whether it did."""
@@ -226,6 +227,15 @@ class Campaign:
 
     def _file(self, seed: int) -> Path:
         return self._folder / f"seed-{seed}.json"
+
+
+def _differing(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:
+    """Returns how another campaign differs from this one: `time_s is 60.0 there, 30.0 here`."""
+    keys = [key for key in {**old, **new} if old.get(key) != new.get(key)]
+    shown = [key for key in keys if key != "plan"]  # a digest, which settings change, too
+    if not shown:
+        return "its launch file had other components or settings"
+    return ", ".join(f"{key} is {json.dumps(old.get(key))} there, {json.dumps(new.get(key))} here" for key in shown)
 
 
 def _outcome(future: Future[Any]) -> tuple[str, str]:

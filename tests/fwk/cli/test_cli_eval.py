@@ -74,7 +74,7 @@ def test_folder_of_another_campaign_is_refused(launch: Path) -> None:
     assert evaluated(str(launch), "--seeds", "1", "--jobs", "1")[0] == 0
     code, _, said = evaluated(str(launch), "--seeds", "1", "--jobs", "1", "--time", "3")
     assert code == 2
-    assert "holds another campaign" in said
+    assert "eval-it holds another campaign: time_s is 25.0 there, 3.0 here; choose another folder" in said
 
 
 def test_folder_without_results_takes_another_campaign(launch: Path) -> None:
@@ -95,7 +95,7 @@ def test_changed_launch_file_is_another_campaign(launch: Path) -> None:
     for change in ("period_s: 0.1\n", "stages: [think, act]\n"):
         launch.write_text(LAUNCH + change)
         code, _, said = evaluated(str(launch), "--seeds", "1..3", "--jobs", "1")
-        assert (code, "holds another campaign" in said) == (2, True)
+        assert (code, "another campaign: its launch file had other components or settings" in said) == (2, True)
 
 
 def test_folder_that_cannot_be_is_named(launch: Path) -> None:
@@ -108,7 +108,7 @@ def test_overridden_settings_reach_each_run(launch: Path) -> None:
     assert evaluated(*words, "--set", "period_s=0.1")[0] == 0
     assert json.loads((launch.parent / "eval-it" / "seed-1.json").read_text())["sets"] == ["period_s=0.1"]
     code, _, said = evaluated(*words)
-    assert (code, "holds another campaign" in said) == (2, True)
+    assert (code, 'another campaign: sets is ["period_s=0.1"] there, null here' in said) == (2, True)
 
 
 def test_mistake_in_an_overridden_setting_is_named(launch: Path) -> None:

@@ -70,6 +70,10 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         + "\n".join(f"a{number}: &a{number} [{', '.join([f'*a{number - 1}'] * 9)}]" for number in range(1, 9)),
     ),
     Broken("it.yaml: there is no component in it; name one under 'components:'", "name: empty"),
+    Broken(
+        "it.yaml: there is no component in it, only templates; include it in a file with 'robots:'",
+        "templates: {rover: {pilot: {use: plan_parts:Pilot}}}",
+    ),
 )
 def test_yaml(folder: Path, broken: Broken) -> None:
     assert said(broken, folder) == expected(broken)
