@@ -26,7 +26,7 @@ def is_component(node: ast.stmt) -> bool:
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.name)
 def test_row_of_a_folder_names_its_components(folder: Path) -> None:
     row = re.search(rf"^\| `procs/{folder.name}` \|.*$", PAGE, re.MULTILINE)
-    assert row, f"no row for procs/{folder.name}"
+    assert row, f"docs/soccer.md: the table of folders has no row for procs/{folder.name}"
     named = set(re.findall(r"`(\w+)`", row[0].rsplit("|", 2)[1]))
     assert named == components(folder)
 
