@@ -81,8 +81,9 @@ def _why_not(channel: str, row: dict[str, Any] | None, outside: list[str]) -> st
     if "@" in channel:
         return "it carries commands; send one with 'fwk call'"
     without = f"--without {row['writer']} " if row["writer"] else ""
-    right = f"to write it yourself, start the run with {without}--outside {channel}, or name it under 'outside:'"
-    return f"{row['writer'] or 'no component'} writes it; {right} in the launch file"
+    file = f"in a launch file without {row['writer']}" if row["writer"] else "in the launch file"
+    right = f"to write it yourself, start the run with {without}--outside {channel}, or name it under 'outside:' {file}"
+    return f"{row['writer'] or 'no component'} writes it; {right}"
 
 
 def made(type_name: str, fields: list[str]) -> Any:

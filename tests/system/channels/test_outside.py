@@ -127,6 +127,7 @@ def test_fwk_send_stands_in_for_a_left_out_writer(launch: Launch, tmp_path: Path
     run = Steered(launch(FILE, "--without", "s/obeys", "--outside", "s/*"), ports)
     said = run.fwk("send", "r/total", "heading_rad=1.0", code=2)
     assert "r/total: r/obeys writes it; to write it yourself, start the run with --without r/obeys --outside" in said
+    assert "or name it under 'outside:' in a launch file without r/obeys" in said
     run.fwk("send", "s/total", "heading_rad=2.5")
     run.launched.until_true(lambda: run.json("bb", "show", "s/total")["sequence"] == 1, "what was sent")
     log = run.end()
