@@ -97,6 +97,12 @@ def _touches(newest: Newest) -> list[str]:
 
 
 @reads_messages
+def _events(newest: Newest) -> list[str]:
+    names = [Kind(event.kind).name.lower() for event in newest("world/match_events").events]
+    return _Names(names, "event", [kind.name.lower() for kind in Kind])
+
+
+@reads_messages
 def _hardest(newest: Newest) -> float:
     speeds_m_s = (each.speed_m_s for each in newest("world/match_events").events if each.kind == Kind.COLLISION)
     return max(speeds_m_s, default=0.0)
@@ -115,7 +121,9 @@ WORDS: Mapping[str, Callable[..., Any]] = {
     "x": _axis(0),
     "y": _axis(1),
     "touching": _touches,
+    "events": _events,
     "collision": _hardest,
 }
 """`ball` is a place and `ball_speed` a number in m/s; `reasons` are those of all whistles; `touching` are the robots at
-the ball and `collision` the closing speed in this tick, 0 without one; `state("free_kick", "cyan")`."""
+the ball, `events` what happens, such as "goal" or "out_end", and `collision` the closing speed, 0 without one, all in
+this tick; `state("free_kick", "cyan")`. A ball in the goal is a "goal" also if it does not count."""

@@ -9,7 +9,7 @@ from fwk.testing import ExpressionError, Verdict
 from procs.scenarios import command, evaluation
 from procs.scenarios.dummy import Dummy
 from procs.scenarios.file import BOOK, Scenario
-from procs.scenarios.scenario import read, run
+from procs.scenarios.scenario import outcome, read, run
 from tests.procs.scenarios.scenario_files import written
 
 SCENARIOS = sorted(BOOK.glob("*.yaml"))
@@ -20,6 +20,15 @@ SCENARIOS = sorted(BOOK.glob("*.yaml"))
 def test_scenario(path: Path) -> None:
     verdict = run(path)
     assert verdict.broken == []
+
+
+@pytest.mark.parametrize(
+    "name", [*(f"keeper-saves-{side}" for side in ("centre", "left", "right")), "keeper-catches-a-lob"]
+)
+def test_shot_on_a_goal_without_its_keeper_goes_in(name: str) -> None:
+    scenario = read(BOOK / f"{name}.yaml").model_copy(update={"robots": ["cyan2"], "eventually": []})
+    (broken,) = outcome(scenario).broken
+    assert broken.endswith('s: not "goal" not in events')
 
 
 def test_book_has_scenarios_that_say_what_they_are_for() -> None:

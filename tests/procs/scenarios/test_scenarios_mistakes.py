@@ -73,6 +73,7 @@ from tests.procs.scenarios.scenario_files import written
             ScenarioError,
             "commands.0: place_robot: no robot 'cyan3'; did you mean 'cyan2'?",
         ),
+        ("always: ['\"gaol\" not in events']", ScenarioError, "no event 'gaol'; did you mean 'goal'?"),
         ("dummies: [cyan2]\nalways: ['\"cyan3\" not in touching']", ScenarioError, "no robot 'cyan3'; did you mean"),
         (
             "always: ['\"duoble touch\" not in reasons']",
