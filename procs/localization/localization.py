@@ -23,7 +23,6 @@ from procs.model.realism import Realism
 from procs.model.robot import FASTEST_M_S, FASTEST_RAD_S
 from procs.vision.calibration import MirrorConfig
 
-_LEAST_M = 0.05  # radius of the smallest robot
 _SHORT_S = 0.05  # up to this age of an exposure, the velocity of the last tick describes the motion well enough
 _AHEAD_S = 0.02  # clocks of cameras may be ahead by this much
 _USUAL = MirrorConfig().mirror()  # the mirror for which the expected errors are stated
@@ -185,10 +184,10 @@ class Localization(Component):
 
         Returns no points if the way since the exposure is not known or the exposure is in the future, because wrong
         places of lines would be worse than none.
-        No camera sees points below the robot itself, such as zeros that a driver appends.
+        Zeros are no points: a driver has filled its arrays up with them.
         """
         seen_m = np.array((points.x_m, points.y_m)).T
-        seen_m = seen_m[(np.abs(seen_m) > _LEAST_M).any(axis=1)]
+        seen_m = seen_m[seen_m.any(axis=1)]
         age_s = self.clock.since_s(points.capture_us) if points.capture_us else 0.0
         if age_s < -_AHEAD_S or (self._last is None and age_s > _SHORT_S):
             return _NOTHING

@@ -116,4 +116,6 @@ def _said(error: ScenarioError | OSError, file: Path) -> str:
     if isinstance(error, FileNotFoundError):
         near = get_close_matches(file.name.removesuffix(".yaml"), [each.stem for each in BOOK.glob("*.yaml")], 1)
         return f"{file}: there is no such scenario" + (f"; did you mean '{near[0]}'?" if near else "")
+    if isinstance(error, IsADirectoryError):
+        return f"{file}: it is a folder; name files in it, or none to play the book"
     return f"{file}: {error.strerror}" if isinstance(error, OSError) else str(error)

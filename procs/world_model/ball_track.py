@@ -14,8 +14,8 @@ What happens to a sighting that does not fit the track:
 - Otherwise it is kept as a doubt, until a better source confirms the track. Two doubts that fit each other begin a new
   track: the ball was kicked or placed elsewhere. Two doubts of one robot do not suffice if another robot has confirmed
   the track meanwhile.
-- A single sighting suffices for a new track if no robot has seen the ball for a while, the ball can have come there, and
-  the sighting is in the air or something may have touched the ball.
+- A single sighting suffices for a new track if no robot has seen the ball for a while, the ball can have come there,
+  and the sighting is in the air or something may have touched the ball.
 """
 
 import math

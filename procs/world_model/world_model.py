@@ -206,8 +206,8 @@ class WorldModel(Component):
         """Returns whether to send a message now: once a period, preferably in a tick with a new frame of the camera.
 
         Messages go with the frame of the camera that is nearest to the period: up to half of the time between frames
-        early. If the tick has no new frame, the message waits one tick for it. From then on messages keep the pace of the
-        camera, and mates get sightings as early as possible.
+        early. If the tick has no new frame, the message waits one tick for it. From then on messages keep the pace of
+        the camera, and mates get sightings as early as possible.
         """
         caught_or_lost = self.team_message.value.ball_held != self._holds
         if caught_or_lost or self._ball.kicks.untold:

@@ -62,7 +62,7 @@ def test_settings_are_added_to_places_and_rules(tmp_path: Path) -> None:
     [
         ("pass-is-recieved", "pass-is-recieved: there is no such scenario; did you mean 'pass-is-received'?\n"),
         ("qq", "qq: there is no such scenario\n"),
-        (".", ".: Is a directory\n"),
+        (".", ".: it is a folder; name files in it, or none to play the book\n"),
     ],
 )
 def test_file_that_cannot_be_read_is_named(
