@@ -30,6 +30,9 @@ _PASSED_M_S = 1.2  # a pass is at least so fast ...
 _TOWARDS = 0.7  # ... and comes towards the robot: cosine of the angle
 _WITH_MATE_M = 0.06  # the passer has a ball so near to its body
 _SURE_S = 0.1  # the light barrier must see the ball so long
+_STANDS_M_S = 0.5  # a faster robot leaves the side of the ball where it is
+_ROOM_M = 0.04  # between the robot at the ball and a standing one, without which it would touch it
+_SIDES_RAD = (0.0, *(sign * 0.2 * step for step in range(1, 16) for sign in (1, -1)))
 
 
 class _Capture(StateMachine):
@@ -126,9 +129,9 @@ class GetBall(_Capture):
 
     def _contest(self, scene: Scene) -> Step:
         meeting = _meeting(scene)
-        goal_rad = bearing_rad(meeting, scene.field.goal_centre(-1.0))
-        place = ahead(meeting, goal_rad, _pressed_m(scene))
-        return _approach(scene, Drive(place, wrap_rad(goal_rad + math.pi), scene.speed_m_s, _ENTRY_M_S))
+        facing_rad = _free_side_rad(scene, meeting, bearing_rad(scene.field.goal_centre(-1.0), meeting))
+        place = ahead(meeting, facing_rad, -_pressed_m(scene))
+        return _approach(scene, Drive(place, facing_rad, scene.speed_m_s, _ENTRY_M_S))
 
     def _go_behind(self, scene: Scene) -> Step:
         place = ahead(_meeting(scene), scene.heading_rad, -_STAGING_M)
@@ -230,6 +233,22 @@ def _pressed_m(scene: Scene) -> float:
     return scene.view.bodies.held_ball_m - _PRESSED_M
 
 
+def _free_side_rad(scene: Scene, ball: Point, facing_rad: float) -> float:
+    """Returns the heading nearest to `facing_rad` with which the robot at the ball touches no standing stranger."""
+    view, reach_m = scene.view, _pressed_m(scene)
+    width_m, strangers = 2 * view.bodies.robot_radius_m, (*view.opponents, *view.silent_mates)
+    standing = [each.place for each in strangers if math.hypot(*each.velocity_m_s) < _STANDS_M_S]
+
+    def room_m(side_rad: float) -> float:
+        place = ahead(ball, side_rad, -reach_m)
+        return min((math.dist(place, other) for other in standing), default=math.inf) - width_m
+
+    if room_m(facing_rad) > 0.0:
+        return facing_rad
+    sides_rad = (wrap_rad(facing_rad + turn_rad) for turn_rad in _SIDES_RAD)
+    return next((side_rad for side_rad in sides_rad if room_m(side_rad) > _ROOM_M), facing_rad)
+
+
 def _approach(scene: Scene, drive: Drive) -> Step:
     """Returns the step of a drive towards the ball; near it the handling is on."""
     return Step(drive, dribble=math.dist(scene.view.own.place, scene.view.ball.place) < _HANDLING_ON_M)
@@ -240,6 +259,8 @@ def drive_to(scene: Scene) -> Drive:
     own, ball = scene.view.own, scene.view.ball
     meeting = ballistics.meet(scene.view).place
     facing_rad = bearing_rad(own.place, ball.place)  # a rolling ball comes from there, wherever it is met
+    if ball.speed_m_s < _SLOW_M_S:
+        facing_rad = _free_side_rad(scene, meeting, facing_rad)
     flees_m_s = ball.velocity_m_s.x_m * math.cos(facing_rad) + ball.velocity_m_s.y_m * math.sin(facing_rad)
     end_m_s = _ENTRY_M_S + max(0.0, flees_m_s)
     gap_m = max(0.0, math.dist(own.place, ball.place) - scene.view.bodies.held_ball_m)

@@ -55,6 +55,22 @@ def test_get_ball_drives_mouth_first_and_handles_when_near() -> None:
     assert GetBall().step(scene(view(OWN, ball(0.7, 0.0)))).dribble
 
 
+@pytest.mark.parametrize("away_m", [0.38, 0.45, 0.55, 0.65, 0.75])
+def test_get_ball_comes_from_beside_a_standing_rival(away_m: float) -> None:
+    rival = robot("", 4.0 - away_m, 0.0)
+    beside = drive(GetBall().step(scene(view(OWN, ball(4.0, 0.0), opponents=(rival,)))))
+    assert math.dist(beside.place, rival.place) > 2 * ROBOT.radius_m
+    assert 0.2 < math.dist(beside.place, (4.0, 0.0)) < 0.33
+    ahead_m = Point(4.0 - beside.place.x_m, -beside.place.y_m)
+    assert beside.heading_rad == pytest.approx(math.atan2(ahead_m.y_m, ahead_m.x_m))
+
+
+def test_get_ball_expects_a_driving_rival_to_leave() -> None:
+    leaving = robot("", 3.4, 0.0)._replace(velocity_m_s=Point(0.0, 1.0))
+    straight = drive(GetBall().step(scene(view(OWN, ball(4.0, 0.0), opponents=(leaving,)))))
+    assert straight.heading_rad == pytest.approx(0.0)
+
+
 def test_get_ball_is_final_when_the_ball_stays_in_the_mouth() -> None:
     skill, held = GetBall(), scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
     assert skill.step(held).status is Status.RUNNING
