@@ -16,7 +16,7 @@ from fwk.component.meanings import meanings_of
 from fwk.control.requests import RequestError
 from fwk.model.errors import PlanError, Problems
 from fwk.model.plan import ComponentPlan, Plan
-from fwk.model.selection import component_below, matches, nearest
+from fwk.model.selection import dot_for_slash, matches, nearest
 from fwk.plan.files.overrides import EXAMPLE, PLACE, RUN_KEYS, SHARED, overrides
 from fwk.plan.files.settings import effective
 from fwk.plan.files.source import Node
@@ -87,8 +87,8 @@ class RunSettings:
         changes = typed.at("config").value if typed.child("config") else {}
         names = [component.name for component in self._plan.components]
         for pattern in list(changes):
-            if name := component_below(pattern, changes[pattern].value, names):
-                problems.add("", "", f"'{pattern}' is not a component; did you mean '{name}'?")
+            if wrong := dot_for_slash(pattern, changes[pattern].value, names):
+                problems.add("", "", wrong)
                 del changes[pattern]
         found = [
             made
@@ -160,8 +160,8 @@ class RunSettings:
         name, _, setting = pattern.partition(".")
         meant = [each for each in self._plan.components if matches(each.name, name)]
         own = dict.fromkeys(dotted for each in meant for dotted in self._origins[each.index])
-        if below := component_below(name, setting.split(".")[:1], [each.name for each in meant]):
-            return f"'{name}' is not a component; did you mean '{below}'?"
+        if wrong := dot_for_slash(name, setting.split(".")[:1], [each.name for each in meant]):
+            return wrong
         if setting and own:
             return f"no setting '{pattern}'; {nearest(setting, list(own))}"
         if meant:

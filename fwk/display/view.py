@@ -11,6 +11,7 @@ from fwk.display.floods import LineGroup, LineGroups
 from fwk.display.plan_overview import counted, fewer_processes
 from fwk.display.scoreboard import Drawing, Scoreboard
 from fwk.lcm import envelope, messages
+from fwk.model.errors import some
 from fwk.model.plan import Plan
 from lcmtypes.core import log_t, status_t
 
@@ -91,8 +92,7 @@ class View:
         """Returns the components that the main loop waits for, and for how long; empty while the tick advances."""
         if not self.standing_s:
             return ""
-        names = ", ".join(self.waits_for[:3]) + (f" and {len(self.waits_for) - 3} more" if self.waits_for[3:] else "")
-        return f"waits for {names or 'the end of the tick'}, {self.standing_s:.0f} s"
+        return f"waits for {some(self.waits_for, 3) or 'the end of the tick'}, {self.standing_s:.0f} s"
 
     @property
     def slowness(self) -> str:

@@ -1,6 +1,6 @@
 """Mistakes in launch files, collected so that one check reports them all."""
 
-from collections.abc import Iterable, Mapping, Sized
+from collections.abc import Iterable, Mapping, Sequence, Sized
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -94,6 +94,12 @@ def hint(word: str, known: Iterable[str] | Mapping[str, object], otherwise: str 
         return f"did you mean '{near[0]}'?"
     more = ", ..." if len(names) > _LISTED else ""
     return otherwise or (f"{there(names)} {', '.join(names[:_LISTED])}{more}" if names else "there is none")
+
+
+def some(things: Sequence[object], most: int) -> str:
+    """Returns the first of some things, and the number of those left out: `a, b and 3 more`."""
+    more = f" and {len(things) - most} more" if len(things) > most else ""
+    return ", ".join(map(str, things[:most])) + more
 
 
 def there(things: Sized) -> str:

@@ -17,10 +17,11 @@ def nearest(pattern: str, names: Sequence[str]) -> str:
     return hint(pattern, dict.fromkeys(names if "/" in pattern else [*namespaces, *names]))
 
 
-def component_below(pattern: str, keys: Iterable[str], names: Sequence[str]) -> str:
-    """Returns the component that is meant by `pattern.key`, with a dot for the slash; empty if none is."""
+def dot_for_slash(pattern: str, keys: Iterable[str], names: Sequence[str]) -> str:
+    """Returns what is wrong with `pattern.key` where a component is `pattern/key`; empty if there is none."""
     below = (f"{pattern}/{key}" for key in keys)
-    return next((each for each in below if any(matches(name, each) for name in names)), "")
+    meant = next((each for each in below if any(matches(name, each) for name in names)), "")
+    return f"'{pattern}' is not a component; did you mean '{meant}'?" if meant else ""
 
 
 def chosen(names: Sequence[str], only: Sequence[str], without: Sequence[str], problems: Problems) -> list[str]:

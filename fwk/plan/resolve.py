@@ -8,7 +8,7 @@ from typing import Any
 from fwk.component.child_process import missing_program
 from fwk.component.declaration import Declaration
 from fwk.model.errors import Problems, hint
-from fwk.model.selection import component_below, matches, nearest
+from fwk.model.selection import dot_for_slash, matches, nearest
 from fwk.plan.classes import UnusableError, find_class
 from fwk.plan.files.launch_file import Files
 from fwk.plan.files.settings import effective
@@ -62,8 +62,8 @@ def add_settings(files: Files, components: Sequence[Asked], problems: Problems) 
             meant = [asked for asked in components if matches(asked.name, pattern)]
             if not meant and not files.may_hide(pattern):
                 problems.add(node.place, "", f"no component '{pattern}'; {nearest(pattern, names)}")
-            if isinstance(node.value, dict) and (name := component_below(pattern, node.value, names)):
-                problems.add(node.place, "", f"'{pattern}' is not a component; did you mean '{name}'?")
+            if isinstance(node.value, dict) and (wrong := dot_for_slash(pattern, node.value, names)):
+                problems.add(node.place, "", wrong)
                 continue
             for asked in meant:
                 filled = substitute(node, asked.values, partial(_report, problems, asked.name))

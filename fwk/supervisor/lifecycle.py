@@ -5,6 +5,7 @@ from typing import Any, Generic, Protocol, TypeVar, cast
 
 from fwk.control.dependents import users_of, with_needs, with_users
 from fwk.control.requests import Action, RequestError
+from fwk.model.errors import some
 from fwk.model.plan import NOBODY, Plan
 from fwk.model.requests import PLUGIN_ACTIONS
 from fwk.model.selection import matches, nearest
@@ -175,10 +176,8 @@ class Lifecycle(Generic[H]):
         for host, entry in entries.items():
             others = [self._name(index) for index in self._plan.hosts[host].components if index not in chosen]
             if others:
-                more = f" and {len(others) - _NAMES_MAX} more" if len(others) > _NAMES_MAX else ""
                 raise RequestError(
-                    f"the process '{entry.name}' holds {', '.join(others[:_NAMES_MAX])}{more} as well; "
-                    f"{action} all of them, "
+                    f"the process '{entry.name}' holds {some(others, _NAMES_MAX)} as well; {action} all of them, "
                     "or give each component its own process with --hosting process"
                 )
 

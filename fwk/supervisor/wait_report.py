@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from fwk.clock import US_PER_S
 from fwk.component.log import Logger
+from fwk.model.errors import some
 from fwk.supervisor.host_process import HostProcess
 
 SHORT_US = 200_000
@@ -51,6 +52,4 @@ class WaitReport:
         self._hosts = ()
 
     def _names(self) -> str:
-        names = [self._component_of(host) for host in self._hosts]
-        more = f" and {len(names) - _NAMES_MAX} more" if len(names) > _NAMES_MAX else ""
-        return ", ".join(names[:_NAMES_MAX]) + more
+        return some([self._component_of(host) for host in self._hosts], _NAMES_MAX)

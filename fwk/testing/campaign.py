@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, cast, overload
 
 from fwk.lcm.type_registry import put_first, use_types_of
+from fwk.model.errors import some
 from fwk.plan.classes import find_object
 from fwk.plan.what_ran import hash_of_module
 from fwk.testing.executors import CampaignError
@@ -263,8 +264,7 @@ def _causes(failures: Mapping[int, str]) -> str:
 
 def listed(seeds: Sequence[int]) -> str:
     """Returns the seeds, the first of them if they are many: `1, 2, 3`."""
-    more = f" and {len(seeds) - _NAMED} more" if len(seeds) > _NAMED else ""
-    return ", ".join(map(str, seeds[:_NAMED])) + more
+    return some(seeds, _NAMED)
 
 
 def _codes_in(file: Path) -> dict[int, str]:

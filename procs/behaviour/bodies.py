@@ -15,8 +15,7 @@ class Bodies(NamedTuple):
     held_ball_m: float
     """From the middle of a robot to the middle of the ball in its mouth."""
     beside_m: float
-    """From the middle of a robot to the middle of a ball that just passes it. Distances within which a robot counts as
-    being at the ball are this one and a margin."""
+    """From the middle of a robot to the middle of a ball that just passes it."""
     sliding_m_s2: float
     """Deceleration of the sliding ball."""
     rolling_m_s2: float

@@ -41,7 +41,7 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
     if not game.free_play:
         takes = (rank == _TAKER or alone) and game.whose is Whose.OURS
         return _set_piece(view, game, takes, holds_ball, field)
-    touched = view.ball.is_near(view.others, view.bodies.beside_m + _TOUCHED_M)
+    touched = view.is_at_ball(view.others, _TOUCHED_M)
     taken = view.own.role == PASSER and bool(mates) and not touched
     if holds_ball and taken:
         return PASSER, Order("shoot", field.goal_centre(1.0), intention="take set piece")

@@ -82,9 +82,9 @@ def _announcer(view: View) -> str:
 
 
 def _arrived(view: View, receiver: str) -> bool:
-    return view.ball.is_near((mate for mate in view.mates if mate.name == receiver), view.bodies.beside_m + _TAKEN_M)
+    return view.is_at_ball((mate for mate in view.mates if mate.name == receiver), _TAKEN_M)
 
 
 def taken(view: View) -> bool:
     """Returns whether an opponent has the ball."""
-    return view.ball.is_near(view.opponents, view.bodies.beside_m + _TAKEN_M)
+    return view.is_at_ball(view.opponents, _TAKEN_M)

@@ -8,7 +8,7 @@ from procs.behaviour.game import Game, Whose
 from procs.behaviour.order import Order
 from procs.behaviour.passing import Passing
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER, Job
-from procs.behaviour.skills.getting import comes_fast
+from procs.behaviour.skills.getting import HELD_M, comes_fast
 from procs.behaviour.skills.keeping import BEFORE_LINE_M
 from procs.behaviour.view import Robot, View
 from procs.model.field import Field, Point
@@ -17,7 +17,6 @@ from procs.model.geometry import ahead, bearing_rad, clamp
 
 _AREA_M = 1.2  # a marking robot would stand in the penalty area with an opponent so near to it
 _MARK_M = 3.0  # a defender leaves its place for an opponent this near
-_HELD_M = 0.14  # a robot with the ball so near to its body has it
 _FAST_BALL_M_S, _FETCHED_M, _SOONER_S = 1.2, 0.3, 0.3
 """The goalkeeper leaves its line for a slower ball, at most so far outside the penalty area, if no other robot reaches
 it so much sooner."""
@@ -111,7 +110,7 @@ class Tactics:
             return _BARRED_S  # it held the ball in the last tick and does not any more
         if not game.free_play and self._fumbled(view) and self._taking:
             return _BARRED_S
-        return 0.0 if view.ball.is_near(view.others, view.bodies.beside_m + _TOUCHED_M) else self._barred_s
+        return 0.0 if view.is_at_ball(view.others, _TOUCHED_M) else self._barred_s
 
     def _fumbled(self, view: View) -> bool:
         """Returns whether the robot has bumped the ball of the set piece away; another may have done so before."""
@@ -234,7 +233,7 @@ class Tactics:
     def _go_for_ball(self, view: View) -> Order:
         ball = view.ball
         goal_rad = bearing_rad(ball.place, self.field.goal_centre(1.0))
-        rolls_free = not ball.is_near(view.opponents, view.bodies.beside_m + _HELD_M)
+        rolls_free = not view.is_at_ball(view.opponents, HELD_M)
         share = _MEETS_ON if self._last.skill in ("receive", "intercept") else 1.0
         if rolls_free and comes_fast(ball, view.own, share):
             passed = bool(self.passing.said.passer)
@@ -249,7 +248,7 @@ class Tactics:
             if runner and _nearest_defender(view, runner, _MARK_M):
                 return Order("mark", runner.place, bearing_rad(runner.place, view.ball.place), "mark")
         place = job.place
-        if view.ball.is_near(field_players(view), view.bodies.beside_m + _HELD_M):
+        if view.is_at_ball(field_players(view), HELD_M):
             place = formation.beside_shot(view.own.place, place, view.ball.place, self.field)
         return self._stand(view, place, job.role)
 

@@ -95,6 +95,10 @@ class View(NamedTuple):
         """All robots but the own one."""
         return (*self.mates, *self.opponents, *self.silent_mates)
 
+    def is_at_ball(self, robots: Iterable[Robot], within_m: float) -> bool:
+        """Returns whether the ball is nearer than `within_m` to the body of one of the robots."""
+        return self.ball.is_near(robots, self.bodies.beside_m + within_m)
+
     def without(self, robots: Container[str]) -> "View":
         """Returns the view without mates that take no part in the game."""
         return self._replace(mates=tuple(mate for mate in self.mates if mate.name not in robots))

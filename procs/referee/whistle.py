@@ -230,9 +230,10 @@ class Whistle(Match):
         if not punished:
             return False
         restart = self._after_fouls(punished, scene.sight.ball)
-        if only in (None, restart.state):
-            self.interrupt(restart, punished[0].reason, punished[0].robot if len(punished) == 1 else "")
-        return only in (None, restart.state)
+        if only not in (None, restart.state):
+            return False
+        self.interrupt(restart, punished[0].reason, punished[0].robot if len(punished) == 1 else "")
+        return True
 
     def _after_fouls(self, fouls: list[Foul], ball: Point) -> Restart:
         """Returns the free kick or the penalty that a foul brings; fouls of both teams bring a dropped ball."""

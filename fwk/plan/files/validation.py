@@ -24,7 +24,7 @@ _KINDS = {
         "it should be a mapping with keys such as 'name: value'",
     ),
 }
-"""What would be right, in the words of YAML, by pydantic's kind of mistake."""
+"""Corrections in the words of YAML, by pydantic's kind of mistake."""
 _UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
 
 

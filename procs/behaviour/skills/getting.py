@@ -22,7 +22,8 @@ _SOFT_1_S = 2.0  # ... by this speed for each metre, because it follows its comm
 _GENTLE_1_S = 1.2  # the same at a set piece, which is not to be bumped away
 _SLOW_M_S = 0.5  # a faster ball has to be caught first
 _CONTEST_M = 1.2  # a rival so near to the ball leaves no time for that
-_HELD_M = 0.14  # an opponent with the ball so near to its body has it
+HELD_M = 0.14
+"""A robot with the ball so near to its body has it."""
 _KEPT_M_S = 3.6  # a faster ball bounces off a standing mouth; the robot gives before it ...
 _GIVING_S, _GIVING_M, _GIVING_M_S = 0.5, 0.4, 0.7  # ... from so long before its arrival, so far and so fast
 _ON_LINE_M = 0.3  # a robot this near to its place on the ball's way has got there
@@ -112,8 +113,7 @@ class GetBall(_Capture):
     """
 
     def _opponent_has_it(self, scene: Scene) -> bool:
-        view = scene.view
-        return view.ball.is_near(view.opponents, view.bodies.beside_m + _HELD_M)
+        return scene.view.is_at_ball(scene.view.opponents, HELD_M)
 
     def _set_piece_from_beside(self, scene: Scene) -> bool:
         if not scene.set_piece:
@@ -184,9 +184,7 @@ class Receive(_Capture):
 
     def _pass_comes(self, scene: Scene) -> bool:
         view = scene.view
-        return comes_fast(view.ball, view.own) and not view.ball.is_near(
-            view.mates, view.bodies.beside_m + _WITH_MATE_M
-        )
+        return comes_fast(view.ball, view.own) and not view.is_at_ball(view.mates, _WITH_MATE_M)
 
     def _nothing_to_see(self, scene: Scene) -> bool:
         return not scene.view.ball.known and _passer(scene) is None

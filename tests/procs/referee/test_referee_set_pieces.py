@@ -223,7 +223,7 @@ def test_penalty_waits_for_the_keeper_between_its_posts(comes: bool) -> None:
 
 @pytest.mark.parametrize(("y_m", "put_back"), [(7.1, False), (7.12, True)])
 def test_ball_pushed_over_the_line_before_a_throw_in(y_m: float, put_back: bool) -> None:
-    """It is near its spot, but wholly out of the field."""
+    """The ball is near its spot, but wholly out of the field."""
     script = Script(stoppage_s=2.0).playing()
     script.ball = Point(3.0, 7.2)
     script.tick(Event(Kind.OUT_SIDE, "magenta2", "", *script.ball, 3.0))
