@@ -6,7 +6,7 @@ all later inputs are applied again.
 """
 
 from bisect import bisect_left
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from operator import itemgetter
 
@@ -52,8 +52,13 @@ class BallTracker:
 
     @property
     def known(self) -> bool:
-        """True if the ball was seen within the time-out."""
-        return self._at_now().filter is not None
+        """True if the ball was seen within the time-out; this takes no prediction."""
+        if self._current is not None:
+            return self._current.filter is not None
+        self._settle()
+        newest = self._moments[-1].track
+        parts = self._parts(newest.time_us, self._now_us)
+        return newest.filter is not None and all(newest.knows(*part) for part in parts)
 
     @property
     def track(self) -> BallFilter:
@@ -193,8 +198,12 @@ class BallTracker:
 
     def _moved(self, track: BallTrack, time_us: int) -> BallTrack:
         """Returns a track at a later time, through the conditions of the ticks between."""
-        while track.time_us < time_us:
-            end_us = min(time_us, track.time_us + _LONGEST_STEP_US)
-            step = next((step for step in self._steps if step.end_us >= end_us), Step())
-            track = track.moved(end_us, step)
+        for part in self._parts(track.time_us, time_us):
+            track = track.moved(*part)
         return track
+
+    def _parts(self, from_us: int, to_us: int) -> Iterator[tuple[int, Step]]:
+        """Yields the end and the conditions of each part into which a prediction is divided."""
+        while from_us < to_us:
+            from_us = min(to_us, from_us + _LONGEST_STEP_US)
+            yield from_us, next((step for step in self._steps if step.end_us >= from_us), Step())

@@ -22,7 +22,7 @@ class PlacedBall:
 
         Args:
             game: the newest state of the game.
-            ball: the tracker of the ball; only set pieces ask whether the ball is known, as that takes a prediction.
+            ball: the tracker of the ball.
         """
         begins = game.stopped and game.time_in_state_s < self._stopped_s
         self._stopped_s = game.time_in_state_s if game.stopped else math.inf
