@@ -87,19 +87,15 @@ class Camera(Component):
 
     @classmethod
     def preload(cls, config: CameraConfig) -> None:
-        """Computes the painted field and the maps of the mirror, which are the same for all robots."""
-        wear = _wear(chosen(PRESETS[config.realism], config))
-        Renderer(
-            config.mirror.mirror(config.roll_deg, config.pitch_deg),
-            config.field,
-            Bodies.of(config.robot, config.ball),
-            wear,
-        )
+        """Computes the painted field and the noise, which are the same for all robots."""
+        errors = chosen(PRESETS[config.realism], config)
+        mirror = config.mirror.mirror(config.roll_deg, config.pitch_deg)
+        Renderer(mirror, config.field, Bodies.of(config.robot, config.ball), _wear(errors))
+        SensorNoise(mirror.size_px, errors.noise_levels, config.brightness, errors.flicker)
 
     def init(self) -> None:
         cv2.setNumThreads(1)
         self._delayed = DelayedTruth(self.name, "pictures", self.log)
-        self._noise_seed = int(self.rng.integers(1 << 32))
         built, interrupted = self.rng.spawn(2)
         self._tilts, self._casts = built.standard_normal(2), built.standard_normal(3)
         self._gaps = Gaps(interrupted)
@@ -126,7 +122,6 @@ class Camera(Component):
             errors.noise_levels,
             config.brightness,
             errors.flicker,
-            self._noise_seed,
             blur_px=errors.blur_px,
             vignette=errors.vignette,
             cast=(blue, green, red),

@@ -44,12 +44,14 @@ class Carpet:
     @property
     def pixels(self) -> Picture:
         """The picture in colours."""
-        return coloured(self.numbers)
+        pixels = np.empty((*self.numbers.shape, 3), np.uint8)
+        colour_in(pixels, self.numbers)
+        return pixels
 
 
-def coloured(numbers: NDArray[np.uint8]) -> Picture:
-    """Returns the colours (height, width, 3) of a picture of their numbers."""
-    return np.asarray(cv2.applyColorMap(numbers, _PALETTE), np.uint8)
+def colour_in(pixels: Picture, numbers: NDArray[np.uint8]) -> None:
+    """Gives the pixels (height, width, 3) the colours of a picture of their numbers (height, width)."""
+    cv2.applyColorMap(numbers, _PALETTE, pixels)
 
 
 class Wear(NamedTuple):

@@ -7,35 +7,52 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from procs.simulation.rendering.carpet import FLOOR_NUMBER, Carpet, coloured
-from procs.vision.colours import Picture
+from procs.simulation.rendering.carpet import FLOOR_NUMBER, Carpet, colour_in
+from procs.vision.colours import FLOOR, Picture
 from procs.vision.mirror import Mirror
 
 MARGIN_PX = 6  # how far the picture can shake
 _FAR_M = 1e4  # where pixels above the horizon look: off the carpet, which gives the colour of the surroundings
+_BAND_PX = 54  # height of a band; lower ones leave out more pixels above the horizon, but need more calls
 
 
 class GroundView:
-    """Looks up what each pixel sees on the carpet."""
+    """Looks up what each pixel sees on the carpet, in bands that end where the ground does."""
 
     def __init__(self, mirror: Mirror, carpet: Carpet) -> None:
-        self._size_px = mirror.size_px
         self._carpet = carpet
         self._maps = _ground_maps(mirror)
+        self._bands = _bands(self._maps, mirror.size_px)
+        self._surroundings = np.full((mirror.size_px, mirror.size_px, 3), FLOOR, np.uint8)
 
     def picture(self, x_m: float, y_m: float, heading_rad: float, right: int = 0, down: int = 0) -> Picture:
         """Returns the ground seen from a pose in the world; `right` and `down` shift the picture by half pixels."""
         carpet = self._carpet
         cosine, sine = (f(heading_rad) / carpet.metres_per_px for f in (math.cos, math.sin))
         column, row = (at / carpet.metres_per_px + zero for at, zero in zip((x_m, y_m), carpet.origin_px, strict=True))
-        top, left = MARGIN_PX - down // 2, MARGIN_PX - right // 2
-        ground = self._maps[down % 2][right % 2][top : top + self._size_px, left : left + self._size_px]
-        looked_up = cv2.transform(ground, np.array([[cosine, -sine, column], [sine, cosine, row]]))
-        # Nearest neighbours: bilinear interpolation differs between OpenCV's versions, and costs more.
-        numbers = cv2.remap(  # type: ignore[call-overload]  # the stubs do not know that one map can hold both coordinates
-            carpet.numbers, looked_up, None, cv2.INTER_NEAREST, borderValue=(FLOOR_NUMBER,)
-        )
-        return coloured(numbers)
+        to_carpet = np.array([[cosine, -sine, column], [sine, cosine, row]])
+        ground, past_px, below_px = self._maps[down % 2][right % 2], MARGIN_PX - right // 2, MARGIN_PX - down // 2
+        seen = self._surroundings.copy()
+        for top, bottom, left, end in self._bands:
+            part = ground[below_px + top : below_px + bottom, past_px + left : past_px + end]
+            # Nearest neighbours: bilinear interpolation differs between OpenCV's versions, and costs more.
+            numbers = cv2.remap(  # type: ignore[call-overload]  # the stubs do not know that one map can hold both coordinates
+                carpet.numbers, cv2.transform(part, to_carpet), None, cv2.INTER_NEAREST, borderValue=(FLOOR_NUMBER,)
+            )
+            colour_in(seen[top:bottom, left:end], numbers)
+        return seen
+
+
+def _bands(maps: list[list[NDArray[np.float32]]], size_px: int) -> list[tuple[int, int, int, int]]:
+    """Returns the bands that see ground, however the picture shakes: (top, bottom, left, right), ends excluded."""
+    sees_ground = np.any([np.abs(each[..., 0]) < _FAR_M for row in maps for each in row], axis=0)
+    bands = []
+    for top in range(0, size_px, _BAND_PX):
+        bottom = min(top + _BAND_PX, size_px)
+        columns = np.flatnonzero(sees_ground[top : bottom + 2 * MARGIN_PX].any(axis=0))
+        if len(columns):
+            bands.append((top, bottom, max(int(columns[0]) - 2 * MARGIN_PX, 0), min(int(columns[-1]) + 1, size_px)))
+    return bands
 
 
 @lru_cache(maxsize=4)

@@ -49,7 +49,7 @@ class Renderer:
         self._ground = GroundView(mirror, lay_carpet(field, wear=wear))
         self._posts_m = np.array([post for side in SIDES for post in field.goal_posts(side)])
         self._post_size_m = (field.post_diameter_m / 2, field.goal_height_m)
-        self._unseen, self._mask = _unseen(mirror, bodies.robot_radius_m)
+        self._unseen, self._mask = _unseen(mirror.size_px, mirror.radius_px(bodies.robot_radius_m))
 
     def render(self, scene: Scene, shake_px: tuple[float, float] = (0.0, 0.0)) -> Picture:
         """Returns the picture, size x size x 3, without noise; equal scenes give equal bytes.
@@ -116,11 +116,14 @@ class Renderer:
 
 
 @lru_cache(maxsize=4)
-def _unseen(mirror: Mirror, robot_radius_m: float) -> tuple[Picture, NDArray[np.uint8]]:
-    """Returns the fixed part of a frame, the robot's own body and black outside the mirror, and its mask; cached."""
-    from_centre_px = np.arange(mirror.size_px) - mirror.centre_px
+def _unseen(size_px: int, body_px: float) -> tuple[Picture, NDArray[np.uint8]]:
+    """Returns the fixed part of a frame, the robot's own body and black outside the mirror, and its mask.
+
+    All cameras of one size share them, however their mirrors are tilted.
+    """
+    from_centre_px = np.arange(size_px) - (size_px - 1) / 2
     radius_px = np.hypot(from_centre_px[:, None], from_centre_px)
-    bare = (radius_px >= mirror.radius_px(robot_radius_m)) & (radius_px <= mirror.size_px / 2)
+    bare = (radius_px >= body_px) & (radius_px <= size_px / 2)
     black = np.full((*bare.shape, 3), BLACK, np.uint8)
     return black, np.where(bare, 0, 255).astype(np.uint8)
 

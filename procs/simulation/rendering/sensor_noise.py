@@ -1,15 +1,21 @@
 """Sensor noise of a camera: an error of every pixel, and a varying brightness."""
 
+from functools import lru_cache
+
 import cv2
 import numpy as np
 
 from procs.vision.colours import Picture
 
-_SPARE_PX = 64  # the noise field is larger than a picture by this, and each frame uses another part of it
+_SPARE_PX = 128  # the noise field is larger than a picture by this, and each frame uses another part of it
+_SEED = 1  # of the noise field
 
 
 class SensorNoise:
-    """Adds noise drawn beforehand: fresh random numbers for every pixel would cost more than the whole picture."""
+    """Adds noise drawn beforehand: fresh random numbers for every pixel would cost more than the whole picture.
+
+    All cameras of one size share a field of noise, so that it stays in the processor's cache.
+    """
 
     def __init__(
         self,
@@ -17,7 +23,6 @@ class SensorNoise:
         levels: float,
         brightness: float,
         flicker: float,
-        seed: int,
         *,
         blur_px: float = 0.0,
         vignette: float = 0.0,
@@ -30,15 +35,11 @@ class SensorNoise:
             levels: standard deviation of the noise, of 255.
             brightness: mean factor on all colours.
             flicker: standard deviation of the brightness, as a part of it.
-            seed: of the noise.
             blur_px: standard deviation of the blur.
             vignette: part of the brightness that is missing at the picture's edge.
             cast: factors on blue, green and red.
         """
-        drawn = np.random.default_rng(seed).standard_normal((size_px + _SPARE_PX, size_px + _SPARE_PX, 3))
-        drawn = np.round(drawn * levels)
-        self._lighter = drawn.clip(0, 255).astype(np.uint8)
-        self._darker = (-drawn).clip(0, 255).astype(np.uint8)
+        self._lighter, self._darker = _noise(size_px, levels)
         self._noisy = levels > 0
         self._brightness = brightness
         self._flicker = flicker
@@ -64,3 +65,11 @@ class SensorNoise:
         part = np.s_[top : top + height, left : left + width]
         noisy = cv2.add(frame, self._lighter[part])
         return np.asarray(cv2.subtract(noisy, self._darker[part], noisy), np.uint8)
+
+
+@lru_cache(maxsize=4)
+def _noise(size_px: int, levels: float) -> tuple[Picture, Picture]:
+    """Returns what the noise adds to, and what it takes from, each pixel of a field larger than a picture."""
+    drawn = np.random.default_rng(_SEED).standard_normal((size_px + _SPARE_PX, size_px + _SPARE_PX, 3))
+    drawn = np.round(drawn * levels)
+    return drawn.clip(0, 255).astype(np.uint8), (-drawn).clip(0, 255).astype(np.uint8)

@@ -334,3 +334,21 @@ def test_long_step_is_as_sound_as_many_short_ones() -> None:
     assert track.weights.sum() == pytest.approx(1.0)
     assert (np.linalg.eigvalsh(track.covariance) > 0).all()
     assert track.state[:2] == pytest.approx((0.0, 0.0), abs=0.1)
+
+
+def test_whether_the_ball_is_known_takes_no_prediction() -> None:
+    tracker, asked = BallTracker(), BallTracker()
+    for each in (tracker, asked):
+        each.advance(PERIOD_S, 0.5)
+        assert not each.known
+        each.see(Sighting("a", True, np.array((1.0, 2.0)), np.eye(2) * 1e-3))
+    known = []
+    for _ in range(20):
+        for each in (tracker, asked):
+            each.advance(PERIOD_S, 0.5)
+        known.append(asked.known)
+        assert asked._current is None, "a prediction to the present is kept there"
+        assert known[-1] == (tracker._at_now().filter is not None)
+    assert known == [(tick + 1) * PERIOD_S <= 0.5 + 1e-9 for tick in range(20)]
+    with pytest.raises(ValueError, match="not known"):
+        _ = asked.track
