@@ -15,7 +15,7 @@ class Bodies(NamedTuple):
     held_ball_m: float
     """From the middle of a robot to the middle of the ball in its mouth."""
     beside_m: float
-    """From the middle of a robot to the middle of a ball that just passes it."""
+    """From the middle of a robot to the middle of a ball that touches the robot's side."""
     sliding_m_s2: float
     """Deceleration of the sliding ball."""
     rolling_m_s2: float

@@ -141,13 +141,13 @@ class BallTrack:
     flight: Flight | None = None
     """None while the ball is on the ground."""
 
-    def knows(self, time_us: int, step: Step) -> bool:
-        """Returns whether the ball is still known at a later time; this takes no prediction."""
-        return self.filter is not None and time_us - self.seen_us <= step.timeout_us
+    def is_forgotten(self, time_us: int, step: Step) -> bool:
+        """Returns whether the newest sighting is too old at a later time."""
+        return time_us - self.seen_us > step.timeout_us
 
     def moved(self, time_us: int, step: Step) -> "BallTrack":
         """Returns the track at a later time; this one stays as it is."""
-        if self.filter is None or not self.knows(time_us, step):
+        if self.filter is None or self.is_forgotten(time_us, step):
             return BallTrack(time_us, self.ball, None, self.seen_us, self.seen_m, carpet=self._carpet())
         doubts = self.doubts and tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= _SECOND_SIGHT_US)
         ball, confirmed = self.filter.copy(), self.confirmed.copy()

@@ -53,12 +53,10 @@ class BallTracker:
     @property
     def known(self) -> bool:
         """True if the ball was seen within the time-out; this takes no prediction."""
-        if self._current is not None:
-            return self._current.filter is not None
         self._settle()
         newest = self._moments[-1].track
         parts = self._parts(newest.time_us, self._now_us)
-        return newest.filter is not None and all(newest.knows(*part) for part in parts)
+        return newest.filter is not None and not any(newest.is_forgotten(*part) for part in parts)
 
     @property
     def track(self) -> BallFilter:

@@ -23,7 +23,7 @@ class GroundView:
         self._carpet = carpet
         self._maps = _ground_maps(mirror)
         self._bands = _bands(self._maps, mirror.size_px)
-        self._surroundings = np.full((mirror.size_px, mirror.size_px, 3), FLOOR, np.uint8)
+        self._surroundings = _surroundings(mirror.size_px)
 
     def picture(self, x_m: float, y_m: float, heading_rad: float, right: int = 0, down: int = 0) -> Picture:
         """Returns the ground seen from a pose in the world; `right` and `down` shift the picture by half pixels."""
@@ -41,6 +41,12 @@ class GroundView:
             )
             colour_in(seen[top:bottom, left:end], numbers)
         return seen
+
+
+@lru_cache(maxsize=4)
+def _surroundings(size_px: int) -> Picture:
+    """Returns a picture without ground; all cameras of one size share it."""
+    return np.full((size_px, size_px, 3), FLOOR, np.uint8)
 
 
 def _bands(maps: list[list[NDArray[np.float32]]], size_px: int) -> list[tuple[int, int, int, int]]:
