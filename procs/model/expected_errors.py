@@ -14,10 +14,14 @@ class ExpectedErrors(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    ball_px: PositiveFloat = 0.5
+    ball_px: PositiveFloat = 0.3
     """A ball's centre in the picture of a standing robot; the shaking of its mirror is included."""
+    ball_shake_s_m: NonNegativeFloat = 0.9
+    """Growth of `ball_px` for each m/s of the robot, because the mirror of a faster robot shakes more; as a share."""
     robot_px: tuple[PositiveFloat, PositiveFloat] = (0.6, 1.5)
-    """Another robot's middle in the picture, along and across the ray; the shaking of the mirror is included."""
+    """Another robot's middle in the picture of a standing one, along and across the ray; with the shaking."""
+    robot_shake_s_m: NonNegativeFloat = 0.35
+    """Growth of `robot_px` for each m/s of the robot, as a share."""
     frame_m: NonNegativeFloat = 0.006
     """A position by the lines of one frame: the part of its error that all points of the frame share."""
     frame_rad: NonNegativeFloat = 0.002
@@ -47,15 +51,17 @@ class ExpectedErrors(BaseModel):
 
 EXPECTED: dict[Realism, ExpectedErrors] = {
     "none": ExpectedErrors(
-        ball_px=0.25,
+        ball_px=0.15,
+        ball_shake_s_m=0.0,
         robot_px=(0.3, 0.75),
+        robot_shake_s_m=0.0,
         frame_s=0.0,
         frame_rad_s_m=0.0,
         wheel_scale_sd=0.0,
         wheel_noise_sqrt_s=0.0,
     ),
     "friendly": ExpectedErrors(
-        ball_px=0.25,
+        ball_px=0.15,
         robot_px=(0.3, 0.75),
         frame_s=0.01,
         frame_rad_s_m=0.0005,
@@ -65,6 +71,7 @@ EXPECTED: dict[Realism, ExpectedErrors] = {
     "realistic": ExpectedErrors(),
     "harsh": ExpectedErrors(
         ball_px=1.9,
+        ball_shake_s_m=0.45,
         robot_px=(1.7, 3.3),
         frame_m=0.05,
         frame_rad=0.01,

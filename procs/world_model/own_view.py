@@ -36,6 +36,13 @@ class _Past(NamedTuple):
         return _Past(self.age_s + by_s, self.pose, self.rates)
 
 
+class Shaking(NamedTuple):
+    """Growth of the camera's deviations for each m/s of the robot, as a share of those at a standstill."""
+
+    ball_s_m: float
+    robot_s_m: float
+
+
 class OwnView:
     """Pose and velocity of a tick; a robot that does not know its place sees nothing in the world frame."""
 
@@ -44,7 +51,7 @@ class OwnView:
         pose: pose_t,
         odometry: odometry_t,
         known: bool,
-        shake_s_m: float,
+        shaking: Shaking,
         before: "OwnView | None" = None,
         passed_s: float = 0.0,
     ) -> None:
@@ -54,7 +61,7 @@ class OwnView:
             pose: newest pose.
             odometry: newest odometry.
             known: False if the pose is an old one.
-            shake_s_m: growth of the camera's deviation for each m/s of the robot, as a share of that at a standstill.
+            shaking: growth of the camera's deviations with the speed of the robot.
             before: the view `passed_s` ago.
             passed_s: see `before`.
         """
@@ -75,7 +82,9 @@ class OwnView:
                 former = tuple(past.older(passed_s) for past in before.trail if past.age_s + passed_s <= _TRAIL_S)
         self.trail: tuple[_Past, ...] = (_Past(0.0, self.pose, np.array(rates)), *former)
         """This pose and those before it, the newest first, back to one that was corrected."""
-        self._shake = 1.0 + (shake_s_m * float(np.hypot(*self.velocity_m_s))) ** 2
+        speed_m_s = float(np.hypot(*self.velocity_m_s))
+        self._ball_shake = (1.0 + shaking.ball_s_m * speed_m_s) ** 2  # factors of the covariances
+        self._robot_shake = (1.0 + shaking.robot_s_m * speed_m_s) ** 2
 
     def ball(self, percept: ball_percept_t, age_s: float) -> Seen:
         """Returns the likeliest ball (0 or 1) of a percept captured `age_s` ago."""
@@ -87,7 +96,10 @@ class OwnView:
         return [(self._candidate(other, age_s), other.z_m) for other in others]
 
     def _candidate(self, ball: ball_percept_t | ball_candidate_t, age_s: float) -> Seen:
-        return self._from_here(Seen.of([(ball.x_m, ball.y_m)], [ball.covariance_m2], [0.0]), age_s)
+        found = Seen.of([(ball.x_m, ball.y_m)], [ball.covariance_m2], [0.0])
+        if ball.z_m > 0.0:  # the distance of a ball in the air follows from its size, which no shaking changes
+            return self._from_here(found, _shaken_across(found, self._ball_shake), age_s)
+        return self._from_here(found, found.by_sight_m2 * self._ball_shake, age_s)
 
     def obstacles(self, percepts: obstacle_percepts_t, age_s: float, team: int) -> Seen:
         """Returns the obstacles of percepts captured `age_s` ago, without robots that show the colour of a team.
@@ -127,7 +139,7 @@ class OwnView:
             seen = nearest(seen, MOST_OBSTACLES)
         places_m = [(one.x_m, one.y_m) for one in seen]
         found = Seen.of(places_m, [one.covariance_m2 for one in seen], [one.radius_m for one in seen])
-        return self._from_here(found, age_s)
+        return self._from_here(found, found.by_sight_m2 * self._robot_shake, age_s)
 
     def as_mate(self, name: str, now_s: float) -> Mate:
         """Returns the robot itself, as its mates know it."""
@@ -170,11 +182,18 @@ class OwnView:
         past = next((each for each in reversed(self.trail) if each.age_s <= age_s), self.trail[0])
         return past.pose - (age_s - past.age_s) * past.rates
 
-    def _from_here(self, seen: Seen, age_s: float) -> Seen:
-        """Transforms things seen `age_s` ago from the robot frame to the world frame."""
+    def _from_here(self, seen: Seen, shaken_m2: Floats, age_s: float) -> Seen:
+        """Transforms things seen `age_s` ago, with covariances (n, 2, 2), from the robot frame to the world frame."""
         pose = self._at(age_s)
-        shaken_m2 = seen.by_sight_m2 * self._shake
         return Seen(*to_world(pose, self.covariance, seen.positions_m, shaken_m2), seen.radii_m)
+
+
+def _shaken_across(seen: Seen, factor: float) -> Floats:
+    """Returns the covariances (n, 2, 2) of the sight, with variances across the rays that are `factor` times larger."""
+    ranges_m = np.maximum(np.hypot(*seen.positions_m.T), 1e-9)[:, None]
+    across = seen.positions_m[:, ::-1] * (-1.0, 1.0) / ranges_m
+    variances_m2 = np.einsum("ni,nij,nj->n", across, seen.by_sight_m2, across)[:, None, None]
+    return np.asarray(seen.by_sight_m2 + (factor - 1.0) * variances_m2 * across[:, :, None] * across[:, None, :])
 
 
 def _is_possible(rates: tuple[float, float, float]) -> bool:

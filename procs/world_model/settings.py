@@ -4,10 +4,13 @@ from pydantic import Field as Setting
 
 from fwk import Config
 from procs.model.ball import BALL, BallModel
+from procs.model.expected_errors import EXPECTED
 from procs.model.field import Field
+from procs.model.realism import Realism
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.units import US_PER_S
 from procs.world_model.opponents import OpponentSettings
+from procs.world_model.own_view import Shaking
 
 STALE_S = 0.5
 """Older sightings, and older targets of the own skiller, do not count."""
@@ -53,8 +56,13 @@ class WorldModelConfig(Config):
     """Time from one message to the team to the next; messages go with the nearest frame of the camera."""
     sight_correlation: float = Setting(default=1.0, ge=1.0)
     """Number of frames that share one error of the camera; multiplies the covariance of sightings."""
-    shake_s_m: float = Setting(default=0.7, ge=0.0)
-    """Growth of the camera's deviation for each m/s of the robot, as a share of the percepts' deviation."""
+    realism: Realism = "realistic"
+    """Shaking of the mirror that covariances allow for: none, friendly, realistic or harsh."""
+    ball_shake_s_m: float | None = Setting(default=None, ge=0.0)
+    """Growth of a ball's deviation for each m/s of the robot, as a share of what its percept states; null: by
+    `realism`."""
+    robot_shake_s_m: float | None = Setting(default=None, ge=0.0)
+    """The same of another robot's."""
     pose_correlation: float = Setting(default=2.0, ge=1.0)
     """Number of frames that share one error of the own pose; multiplies the covariance that the pose adds."""
     team_correlation: float = Setting(default=1.0, ge=1.0)
@@ -63,6 +71,15 @@ class WorldModelConfig(Config):
     def age_s(self, capture_us: int, now_us: int) -> float:
         """Returns the time since an exposure; `capture_us` of 0 stands for an exposure in this tick."""
         return (now_us - capture_us) / US_PER_S if capture_us and self.use_capture_times else 0.0
+
+    @property
+    def shaking(self) -> Shaking:
+        """Growth of the deviations of percepts with the speed of the robot."""
+        usual = EXPECTED[self.realism]
+        return Shaking(
+            usual.ball_shake_s_m if self.ball_shake_s_m is None else self.ball_shake_s_m,
+            usual.robot_shake_s_m if self.robot_shake_s_m is None else self.robot_shake_s_m,
+        )
 
     @property
     def mouth_m(self) -> float:

@@ -87,7 +87,7 @@ class WorldModel(Component):
         if self.role.refreshed:
             self._role_us = self.clock.now_us
         self._holds = tells_held(self.kicker_state.value, self.clock.since_s(self.kicker_state.header.time_us))
-        view = OwnView(self.pose.value, self.odometry.value, known, config.shake_s_m, self._view, passed_s)
+        view = OwnView(self.pose.value, self.odometry.value, known, self._shaking, self._view, passed_s)
         self._view = view
         told = self._listen(now_s)
         mates = self._team.localized(now_s, config.mate_timeout_s)
@@ -111,6 +111,7 @@ class WorldModel(Component):
     def _apply_settings(self) -> None:
         self._ball.apply(self.config)
         self._rules = self.config.opponent_settings
+        self._shaking = self.config.shaking
         self._opponents.robot_width_m = self._silent.robot_width_m = 2 * self.config.robot.radius_m
         player = player_of(self._robot, self.config.players)
         self._own_team = TEAM_NUMBERS[player.team] if player else 0

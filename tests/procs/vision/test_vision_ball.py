@@ -20,10 +20,14 @@ from procs.vision.omni_ball import OmniBallConfig
 
 DEFAULTS = OmniBallConfig()
 MIRROR = DEFAULTS.mirror.mirror()
-FINDER = BallFinder(
-    MIRROR, ColourRange(DEFAULTS.ball_low, DEFAULTS.ball_high), deviation_px=EXPECTED["realistic"].ball_px
-)
+STATED = EXPECTED["realistic"]
 SHAKE_PX = 0.5
+"""Deviation of the mirror of a robot at 1 m/s."""
+FINDER = BallFinder(
+    MIRROR,
+    ColourRange(DEFAULTS.ball_low, DEFAULTS.ball_high),
+    deviation_px=STATED.ball_px * (1.0 + STATED.ball_shake_s_m),
+)
 
 
 @cache

@@ -8,19 +8,20 @@ from lcmtypes.soccer import ball_percept_t, game_state_t, pose_t, team_message_t
 from procs.model.frames import Floats
 from procs.model.game_states import State
 from procs.world_model.ball_follower import BallFollower, BallNews
-from procs.world_model.own_view import OwnView
+from procs.world_model.own_view import OwnView, Shaking
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.settings import WorldModelConfig
 from procs.world_model.told import mate_of
 
 TICK_US = 40_000
 KICK_M_S = 6.0
+STILL = Shaking(0.0, 0.0)
 CERTAIN = np.eye(3) * 1e-4
 
 
 def view() -> OwnView:
     pose = pose_t(x_m=1.0, y_m=0.0, heading_rad=0.0, localized=True, covariance=CERTAIN.tolist())
-    return OwnView(pose, odometry_t(), True, 0.0, None, 0.04)
+    return OwnView(pose, odometry_t(), True, STILL, None, 0.04)
 
 
 def news(
