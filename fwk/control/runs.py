@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+from collections.abc import Mapping
 from typing import Any
 
 from fwk.clock import US_PER_S, monotonic_us
@@ -125,6 +126,23 @@ def gateway(chosen: str | int | None) -> Client:
         ControlError: as `find`.
     """
     return Client(address.gateway_address(find(chosen)))
+
+
+def public_bus(about: Mapping[str, Any], instead: str = "") -> str:
+    """Returns the URL of the public bus of a run.
+
+    Args:
+        about: facts about the run, as its supervisor tells them.
+        instead: what helps a user of a run without a public bus.
+
+    Raises:
+        ControlError: the run has none.
+    """
+    url: str = about["public_url"]
+    if not url:
+        remedy = instead or "its launch file sets 'public_url' to an empty text"
+        raise ControlError(f"{about['plan']} has no public bus; {remedy}")
+    return url
 
 
 def _listed(runs: dict[int, dict[str, Any]], ports: list[int]) -> str:

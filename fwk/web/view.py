@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 from fwk.bus.public import PublicBus
 from fwk.component.services import RequestState
+from fwk.control import runs
 from fwk.control.client import RefusedError
 from fwk.control.host_file import KeepError, Kept, keep
 from fwk.control.requests import Action
@@ -169,10 +170,9 @@ class RunAccess:
         row = next((row for row in await self.link.channels() if row["channel"] == channel), None)
         if row is None or not row["outside"]:
             raise RefusedError(f"{channel}: programs outside may not write it; name it under 'outside:'")
-        if not about["public_url"]:
-            raise RefusedError(f"{about['plan']} has no public bus")
+        url = runs.public_bus(about)
         data = _encoded(await self.link.message_type(channel), members, channel)
-        bus = PublicBus(about["public_url"])
+        bus = PublicBus(url)
         bus.publish(channel, data)
         bus.close()
         return len(data)

@@ -5,8 +5,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 
-import typer
-
 from fwk.bus.public import PublicBus
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import asking
@@ -15,7 +13,6 @@ from fwk.control import runs
 from fwk.control.client import Client, ControlError
 from fwk.lcm.messages import MessageError
 from fwk.lcm.type_registry import header_of
-from fwk.program import FAILED
 
 _LOOK_US = US_PER_S
 
@@ -39,10 +36,7 @@ def listening(chosen: str | None, instead: str) -> Iterator[tuple[dict[str, Any]
         about = run.ask("run")
         for folder in about["folders"]:
             use_folders([folder])
-        if not about["public_url"]:
-            typer.echo(f"error: {about['plan']} has no public bus; {instead}", err=True)
-            raise typer.Exit(FAILED)
-        bus = PublicBus(about["public_url"])
+        bus = PublicBus(runs.public_bus(about, instead))
         try:
             yield about, _heard(bus, run)
         finally:

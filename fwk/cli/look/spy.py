@@ -19,11 +19,7 @@ def bus_of(chosen: str | None) -> str:
     with asking():
         if chosen is None and not runs.meant():
             return Plan.public_url
-        about = ask(chosen, "run")
-    if not about["public_url"]:
-        typer.echo(f"error: {about['plan']} has no public bus", err=True)
-        raise typer.Exit(1)
-    return str(about["public_url"])
+        return runs.public_bus(ask(chosen, "run"))
 
 
 def spy(

@@ -17,7 +17,7 @@ from fwk.lcm.messages import MessageError
 from fwk.lcm.type_registry import use_types_of
 from fwk.model.errors import Problems, hint
 from fwk.plan.files.source import read_value
-from fwk.program import BAD_INPUT, FAILED
+from fwk.program import BAD_INPUT
 
 _NO_FIELD = "'{}' is not FIELD=VALUE; write for example x_m=1.5, or xs=[1, 2]"
 _NUMBERS = {*INTEGERS, "float", "double"}
@@ -64,10 +64,8 @@ def send(
     except MessageError as error:
         typer.echo(f"error: {error}", err=True)
         raise typer.Exit(BAD_INPUT) from error
-    if not about["public_url"]:
-        typer.echo(f"error: {about['plan']} has no public bus", err=True)
-        raise typer.Exit(FAILED)
-    bus = PublicBus(about["public_url"])
+    with asking():
+        bus = PublicBus(runs.public_bus(about))
     bus.publish(channel, data)
     bus.close()
     sent = {"channel": channel, "type": row["type"], "bytes": len(data)}

@@ -100,3 +100,17 @@ def test_root_prefers_its_own_run(known: dict[int, dict[str, object]]) -> None:
     assert runs.find("match") == 3
     assert runs.find(None) == 3
     assert runs.find("solo") == 2
+
+
+@pytest.mark.parametrize(
+    ("instead", "said"),
+    [
+        ("", "quiet has no public bus; its launch file sets 'public_url' to an empty text"),
+        ("record it with --record", "quiet has no public bus; record it with --record"),
+    ],
+)
+def test_run_without_a_public_bus_says_what_helps(instead: str, said: str) -> None:
+    assert runs.public_bus({"plan": "loud", "public_url": "udpm://a"}, instead) == "udpm://a"
+    with pytest.raises(ControlError) as refused:
+        runs.public_bus({"plan": "quiet", "public_url": ""}, instead)
+    assert str(refused.value) == said
