@@ -1,0 +1,33 @@
+"""A launch file whose components do nothing: python -m tools.bench.idle soccer-percepts.yaml --speed max --ticks 400.
+
+Takes the words of `fwk-launch`. Processes, channels, stages and ticks are those of the launch file, but no component
+initializes itself, and each iteration writes one empty message. What is left is the least that so many processes need,
+whatever their components do: no match can be faster.
+"""
+
+from fwk.cli import launch
+from fwk.component.channels import Writes
+from fwk.engine.runner import Runner
+
+
+def _nothing() -> None:
+    """Does nothing."""
+
+
+def _init(runner: Runner) -> None:
+    """Lets the iterations of a component write its first channel that is not one of a service, and nothing else."""
+    interfaces = (writer for channel, writer in runner.writers.items() if "@" not in channel)
+    first: Writes[object] | None = next(interfaces, None)
+    methods = vars(runner.component)
+    methods["loop"] = _nothing if first is None else first.write
+    methods["config_changed"] = methods["finalize"] = _nothing
+
+
+def main() -> None:
+    """Runs the launch file; its hosts are forked from this process, and so do nothing."""
+    setattr(Runner, "init", _init)  # noqa: B010 - mypy refuses an assignment to a method
+    launch.main()
+
+
+if __name__ == "__main__":
+    main()
