@@ -178,26 +178,27 @@ def free_ports() -> int:
 
 
 @pytest.fixture
-def page(tmp_path: Path) -> Iterator[str]:
-    """The address of a page with a recording."""
+def page(tmp_path: Path, needs: Callable[..., None]) -> Iterator[str]:
+    """The address of a page with a recording, for Chromium."""
+    from tools.docs.rerun_picture import CHROMIUM
+
+    needs(CHROMIUM)
     recording(tmp_path / "log.lcm", ticks=6)
     (tmp_path / "garden_view.py").write_text(PROJECT)
     words = ["view", "--from", "log.lcm", "--web", "--view", "garden_view", "--port", str(free_ports()), "--json"]
-    process = subprocess.Popen([str(BIN / "fwk"), *words], cwd=tmp_path, stdout=subprocess.PIPE, text=True)
-    assert process.stdout
-    served = json.loads(process.stdout.readline())
+    with subprocess.Popen([str(BIN / "fwk"), *words], cwd=tmp_path, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout
+        served = json.loads(process.stdout.readline())
+        yield served["page"]
+        process.send_signal(signal.SIGINT)
+        assert process.wait(30) == 0
     assert served["page"].endswith(f"/?url={served['stream']}")
-    yield served["page"]
-    process.send_signal(signal.SIGINT)
-    assert process.wait(30) == 0
-    process.stdout.close()
 
 
 @pytest.mark.slow
 @pytest.mark.system
-def test_chromium_shows_the_page(needs: Callable[..., None], page: str) -> None:
-    from tools.docs.rerun_picture import CHROMIUM, picture_of, share_of
+def test_chromium_shows_the_page(page: str) -> None:
+    from tools.docs.rerun_picture import picture_of, share_of
 
-    needs(CHROMIUM)
     lawn = b"\x30\x80\x3c"
     assert share_of(picture_of(page, lawn), lawn) > 0.02
