@@ -11,12 +11,11 @@ from fwk.clock import Clock
 from fwk.component.channels import Reads, Writes
 from fwk.lcm import messages
 from fwk.lcm.messages import Header
+from fwk.model.service_channels import client_of
 from lcmtypes.core import acknowledgement_t, answer_t
 
 Q = TypeVar("Q")
 R = TypeVar("R", default=acknowledgement_t)
-ANSWERS = "answers"
-"""Takes the place of the client's name in the name of the channel of replies."""
 QUEUE_MAX = 64
 """Unfinished requests of one client to one service; further ones are rejected."""
 
@@ -53,7 +52,7 @@ class RequestReader(Reads[Q]):
     def __init__(self, channel: str, message_type: type[Q]) -> None:
         super().__init__(channel, message_type)
         self.arrived: list[bytes] = []
-        self.client = channel.partition("@")[2]
+        self.client = client_of(channel)
 
     def _freeze(self, fresh: list[bytes]) -> None:
         super()._freeze(fresh)

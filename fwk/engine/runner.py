@@ -22,9 +22,10 @@ from fwk.component.main_loop import MainLoop
 from fwk.component.plugins import PluginControl
 from fwk.component.port import Port
 from fwk.component.rate_limit import RateLimit
-from fwk.component.services import ANSWERS, RequestReader, Serves
+from fwk.component.services import RequestReader, Serves
 from fwk.lcm import envelope
 from fwk.lcm.messages import Message, has_header
+from fwk.model.service_channels import ANSWERS, client_of, service_of
 from lcmtypes.core import header_t, log_t
 
 LOST_FRAMES = "lost_frames"
@@ -281,9 +282,7 @@ class Runner:
         made: dict[str, RequestReader[Any]] = {name: RequestReader(name, port.message_type) for name in sources}
         self.readers.update(made)
         self.writers[answers] = Writes(answers, port.reply_type, self.stamp)
-        service: Serves[Any, Any] = Serves(
-            answers.partition("@")[0], self.name, self.clock, made, self.writers[answers]
-        )
+        service: Serves[Any, Any] = Serves(service_of(answers), self.name, self.clock, made, self.writers[answers])
         self._services.append(service)
         return service
 
@@ -292,7 +291,7 @@ class Runner:
         self.writers[sent] = Writes(sent, port.message_type, self.stamp)
         self.readers[answers] = Reads(answers, port.reply_type)
         client: Calls[Any, Any] = Calls(
-            sent.partition("@")[0], self.name, self.clock, self.writers[sent], self.readers[answers]
+            service_of(sent), self.name, self.clock, self.writers[sent], self.readers[answers]
         )
         self._services.append(client)
         return client
@@ -318,7 +317,7 @@ class _Early:
 
 def _rows(channels: Sequence[str]) -> list[Sequence[str]]:
     """Returns the channels of a service, a row for each name: the channel of the replies, then those of the clients."""
-    begins = [place for place, name in enumerate(channels) if name.endswith(f"@{ANSWERS}")]
+    begins = [place for place, name in enumerate(channels) if client_of(name) == ANSWERS]
     return [channels[begin:end] for begin, end in zip(begins, [*begins[1:], len(channels)], strict=True)]
 
 

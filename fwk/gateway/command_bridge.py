@@ -6,7 +6,7 @@ from typing import Any
 
 from fwk.clock import US_PER_S, Clock
 from fwk.component.calls import state_of
-from fwk.component.services import ANSWERS, QUEUE_MAX, RequestState
+from fwk.component.services import QUEUE_MAX, RequestState
 from fwk.control.requests import CallService, RequestError
 from fwk.control.server import Connection
 from fwk.gateway.ingress import WRITER, IngressFullError
@@ -14,7 +14,7 @@ from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
 from fwk.model.errors import hint
 from fwk.model.plan import Plan
-from fwk.plan.wiring.command_wiring import OUTSIDE
+from fwk.model.service_channels import ANSWERS, OUTSIDE, client_of, service_channel, service_of
 from lcmtypes.core import answer_t
 
 
@@ -39,10 +39,12 @@ class CommandBridge:
     def __init__(self, plan: Plan, take_in: Callable[[str, Any], int], clock: Clock) -> None:
         types = {channel.name: channel.type_name for channel in plan.channels}
         self._services = {
-            target: _Service(messages.type_named(types[channel]), messages.type_named(types[f"{target}@{ANSWERS}"]))
+            service_of(channel): _Service(
+                messages.type_named(types[channel]),
+                messages.type_named(types[service_channel(service_of(channel), ANSWERS)]),
+            )
             for channel in types
-            for target, _, sender in (channel.partition("@"),)
-            if sender == OUTSIDE
+            if client_of(channel) == OUTSIDE
         }
         self._take_in = take_in
         self._clock = clock
@@ -62,7 +64,7 @@ class CommandBridge:
         try:
             message = messages.decode(service.message_type, bytes.fromhex(request.data), request.name)
             message.command.expires_us = self._clock.now_us + round(request.expires_s * US_PER_S)
-            sequence = self._take_in(f"{request.name}@{OUTSIDE}", message)
+            sequence = self._take_in(service_channel(request.name, OUTSIDE), message)
         except (MessageError, IngressFullError, ValueError) as error:
             raise RequestError(str(error)) from error
         service.waiting[sequence] = connection
@@ -70,9 +72,11 @@ class CommandBridge:
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
         """Takes a message of the run; passes it on if it is a reply to a tool."""
-        target, _, what = channel.partition("@")
+        if client_of(channel) != ANSWERS:
+            return
+        target = service_of(channel)
         service = self._services.get(target)
-        if what != ANSWERS or service is None or not service.waiting:
+        if service is None or not service.waiting:
             return
         message = messages.decode(service.reply_type, data, channel)
         answer: answer_t = message.answer

@@ -5,6 +5,7 @@ from typing import Any, Literal
 
 from fwk.model.names import LINES
 from fwk.model.sections import LogPlan, RecordPlan, RestartPolicy, RunsPlan
+from fwk.model.service_channels import OUTSIDE, client_of
 
 NOBODY = -1
 """As a channel's writer: no component of the plan."""
@@ -72,7 +73,7 @@ class ChannelPlan:
     @property
     def of_tools(self) -> bool:
         """Whether it carries requests of tools, sent by `fwk call`."""
-        return self.writer == NOBODY and self.name.endswith("@outside")
+        return self.writer == NOBODY and client_of(self.name) == OUTSIDE
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from fwk.lcm.messages import Message
 from fwk.model.errors import Problems, hint
 from fwk.model.names import LINES
 from fwk.model.plan import NOBODY, ChannelPlan
+from fwk.model.service_channels import is_of_service
 
 OPTION = "--outside"
 
@@ -28,7 +29,7 @@ def opened(
         patterns: channels, or patterns such as `cyan1/*`.
         problems: gets each pattern that selects none.
     """
-    known = [each for each in channels if not (each.of_tools or each.images or "@" in each.name or each.name == LINES)]
+    known = [each for each in channels if not (is_of_service(each.name) or each.images or each.name == LINES)]
     free = {each.name for each in known if each.writer == NOBODY or names[each.writer] not in kept}
     found: dict[str, type[Message]] = {}
     for pattern in patterns:

@@ -13,10 +13,10 @@ from fwk.component.config import Config
 from fwk.component.declaration import Declaration, declaration
 from fwk.component.images import Ring, VisionMaster
 from fwk.component.port import Port
-from fwk.component.services import ANSWERS
 from fwk.engine.runner import Runner, RunSection
 from fwk.lcm import envelope
 from fwk.model.errors import hint
+from fwk.model.service_channels import ANSWERS, service_channel
 from fwk.testing.channel_decisions import ChannelDecisions
 from fwk.testing.plans import alone
 from fwk.testing.ports import OtherOwner, OtherSender, PortBench
@@ -88,14 +88,14 @@ class Bench:
     def _command_ports(self, port: Port, target: str, name: str) -> tuple[str, str]:
         """Makes the other side of a port for commands; returns the channels that the component's side stands for."""
         assert port.reply_type
-        answers = PortBench(f"{target}@{ANSWERS}", port.reply_type)
+        answers = PortBench(service_channel(target, ANSWERS), port.reply_type)
         self._ports[answers.channel] = answers
         other: PortBench
         if port.owns:
-            other = OtherSender(f"{target}@{SENDER}", port.message_type, answers)
+            other = OtherSender(service_channel(target, SENDER), port.message_type, answers)
             made = (answers.channel, other.channel)
         else:
-            other = OtherOwner(f"{target}@{name}", port.message_type, answers, name)
+            other = OtherOwner(service_channel(target, name), port.message_type, answers, name)
             made = (other.channel, answers.channel)
         self._ports[other.channel] = self._by_name[target] = other
         return made

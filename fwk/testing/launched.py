@@ -8,6 +8,7 @@ from typing import Any
 
 from fwk.component.declaration import declaration
 from fwk.model.plan import ComponentPlan, Plan
+from fwk.model.service_channels import service_of
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.testing.memory import MemorySystem
 
@@ -71,7 +72,7 @@ def _class(component: ComponentPlan) -> Any:
 def _channels(component: ComponentPlan) -> dict[str, str]:
     """Returns the channel or the service of each port, or the pattern of a port with many instances."""
     each = {port.attribute for port in declaration(_class(component)).ports if port.each}
-    found = {port: [name.partition("@")[0] for name in names] for port, names in component.channels.items()}
+    found = {port: [service_of(name) for name in names] for port, names in component.channels.items()}
     return {port: _pattern(names) if port in each else names[0] for port, names in found.items() if names}
 
 

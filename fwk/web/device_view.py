@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from fwk.model.service_channels import is_of_service
 from fwk.web.instruments import CAMERA, Instrument, instrument_of
 from fwk.web.scene import Newest, Scene
 from fwk.web.view import View
@@ -54,5 +55,5 @@ def _moment(message: Any) -> str:
 
 def devices_of(types: dict[str, Any]) -> dict[str, Instrument]:
     """Returns the channels that have an instrument, from the types of all channels."""
-    found = {channel: instrument_of(kind.__slots__) for channel, kind in types.items() if "@" not in channel}
+    found = {channel: instrument_of(kind.__slots__) for channel, kind in types.items() if not is_of_service(channel)}
     return {channel: instrument for channel, instrument in found.items() if instrument}

@@ -7,7 +7,7 @@ from nicegui import ui
 
 from fwk.control.client import ControlError, RefusedError
 from fwk.lcm import messages
-from fwk.plan.wiring.command_wiring import OUTSIDE
+from fwk.model.service_channels import OUTSIDE, client_of, service_of
 from fwk.web.layout import Frame
 
 _NUMBERS = {"int8_t": int, "int16_t": int, "int32_t": int, "int64_t": int, "byte": int, "double": float, "float": float}
@@ -66,10 +66,10 @@ async def send_form(frame: Frame, channel: str) -> None:
     link, access = frame.link, frame.access
     if not frame.may_steer:
         return
-    service, _, sender = channel.partition("@")
+    service = service_of(channel) if client_of(channel) == OUTSIDE else ""
     try:
         row = next((row for row in await link.channels() if row["channel"] == channel), None)
-        if row is None or not (row["outside"] or sender == OUTSIDE):
+        if row is None or not (row["outside"] or service):
             return
         kind = await link.message_type(channel)
     except ControlError as error:
@@ -85,7 +85,7 @@ async def send_form(frame: Frame, channel: str) -> None:
             ui.notify(str(error), type="negative")
             return
         members = {name: value for name, value in values.items() if value is not None}
-        if sender == OUTSIDE:
+        if service:
             answer = await frame.do(access.call(service, members))
             if answer:
                 ui.notify(f"{service}: {answer['state']}", type="positive")

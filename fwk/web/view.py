@@ -13,6 +13,7 @@ from fwk.control.client import RefusedError
 from fwk.control.host_file import KeepError, Kept, keep
 from fwk.control.requests import Action
 from fwk.lcm import messages
+from fwk.model.service_channels import OUTSIDE, service_channel
 from fwk.plan.files.launch_file import host_file, shown
 from fwk.web.access import Role
 from fwk.web.recorded_link import RecordedLink
@@ -156,7 +157,7 @@ class RunAccess:
             ControlError: not permitted, refused, or the component could not carry it out; the text gives its reason.
         """
         self._check()
-        kind = await self.link.message_type(f"{name}@outside")
+        kind = await self.link.message_type(service_channel(name, OUTSIDE))
         answer = await self.link.call(name, _encoded(kind, members, name), timeout_s)
         if answer["state"] not in _WELL:
             reason = f": {answer['reason']}" if answer["reason"] else ""

@@ -13,9 +13,9 @@ class Bodies(NamedTuple):
     robot_height_m: float
     ball_radius_m: float
     held_ball_m: float
-    """From the middle of a robot to the middle of the ball in its mouth."""
+    """Distance from the middle of a robot to the middle of the ball in its mouth."""
     beside_m: float
-    """From the middle of a robot to the middle of a ball that touches the robot's side."""
+    """Distance from the middle of a robot to the middle of a ball that touches the robot's side."""
     sliding_m_s2: float
     """Deceleration of the sliding ball."""
     rolling_m_s2: float

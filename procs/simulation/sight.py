@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from procs.model.algebra import Floats, product
+from procs.model.rays import left_of, rays
 from procs.vision.mirror import Mirror
 from procs.vision.uncertainty import ground_covariance
 
@@ -18,11 +19,10 @@ def hidden(points_m: Floats, bodies_m: Floats, radius_m: float) -> Floats:
     """
     if not len(points_m):
         return np.zeros(0)
-    range_m = np.maximum(np.hypot(points_m[:, 0], points_m[:, 1]), 1e-6)
+    range_m, ahead = rays(points_m)
     bodies_m = bodies_m[np.hypot(bodies_m[:, 0], bodies_m[:, 1]) < range_m.max()]
     if not len(bodies_m):
         return np.zeros(len(points_m))
-    ahead = points_m / range_m[:, None]
     along_m = product(ahead, bodies_m.T)
     beside_m = np.abs(ahead[:, :1] * bodies_m[:, 1] - ahead[:, 1:] * bodies_m[:, 0])
     behind = (along_m > 0) & (along_m < range_m[:, None] - radius_m)
@@ -75,17 +75,15 @@ def blurred(mirror: Mirror, points_m: Floats, along_px: Floats, across_px: Float
     """Returns points (n, 2) on the ground moved by so many pixels (n) of the mirror's picture, along and across."""
     if not len(points_m):
         return points_m
-    range_m = np.maximum(np.hypot(points_m[:, 0], points_m[:, 1]), 1e-3)
-    ahead = points_m / range_m[:, None]
-    aside = np.column_stack((-ahead[:, 1], ahead[:, 0]))
+    range_m, ahead = rays(points_m)
     along_m, across_m = mirror.metres_per_px_each(range_m)
-    return np.asarray(points_m + ahead * (along_px * along_m)[:, None] + aside * (across_px * across_m)[:, None])
+    across = left_of(ahead)
+    return np.asarray(points_m + ahead * (along_px * along_m)[:, None] + across * (across_px * across_m)[:, None])
 
 
 def shaken(points_m: Floats, shake_px: tuple[float, float]) -> tuple[Floats, Floats]:
     """Returns the pixels (n) along and across each ray by which a shake (forward, left) moves what points show."""
-    range_m = np.maximum(np.hypot(points_m[:, 0], points_m[:, 1]), 1e-6)
-    ahead = points_m / range_m[:, None]
+    _, ahead = rays(points_m)
     forward, left = shake_px
     return ahead[:, 0] * forward + ahead[:, 1] * left, ahead[:, 0] * left - ahead[:, 1] * forward
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from procs.model.algebra import Floats
+from procs.model.rays import left_of, rays
 from procs.model.robot import ROBOT
 from procs.vision.colours import ColourRange, Picture, to_hsv
 from procs.vision.mirror import Mirror
@@ -45,12 +46,10 @@ class MarkerFinder:
 
     def _samples(self, places_m: Floats) -> Floats:
         """Returns points (robots, samples, 3) on the sides of the robots that face the camera."""
-        ranges_m = np.maximum(np.hypot(places_m[:, 0], places_m[:, 1]), 1e-6)[:, None]
-        ahead = places_m / ranges_m
-        aside = np.column_stack((-ahead[:, 1], ahead[:, 0]))
+        _, ahead = rays(places_m)
         near_m = places_m - ahead * self.radius_m
         points = np.empty((len(places_m), len(_ACROSS), 3))
-        points[:, :, :2] = near_m[:, None] + (_ACROSS * self.radius_m)[:, None] * aside[:, None]
+        points[:, :, :2] = near_m[:, None] + (_ACROSS * self.radius_m)[:, None] * left_of(ahead)[:, None]
         lower_m, upper_m = self.marker_m
         points[:, :, 2] = lower_m + _UP * (upper_m - lower_m)
         return points

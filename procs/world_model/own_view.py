@@ -12,6 +12,7 @@ from procs.model.covariance import is_covariance
 from procs.model.frames import Floats, rotation, to_world
 from procs.model.geometry import plausible, wrap_rad
 from procs.model.nearest import nearest
+from procs.model.rays import left_of, rays
 from procs.model.robot import FASTEST_M_S, FASTEST_RAD_S
 from procs.world_model.seen import MOST_OBSTACLES, Seen
 from procs.world_model.team import Mate, PlaceRow
@@ -190,8 +191,8 @@ class OwnView:
 
 def _shaken_across(seen: Seen, factor: float) -> Floats:
     """Returns the covariances (n, 2, 2) of the sight, with variances across the rays that are `factor` times larger."""
-    ranges_m = np.maximum(np.hypot(*seen.positions_m.T), 1e-9)[:, None]
-    across = seen.positions_m[:, ::-1] * (-1.0, 1.0) / ranges_m
+    _, ahead = rays(seen.positions_m)
+    across = left_of(ahead)
     variances_m2 = np.einsum("ni,nij,nj->n", across, seen.by_sight_m2, across)[:, None, None]
     return np.asarray(seen.by_sight_m2 + (factor - 1.0) * variances_m2 * across[:, :, None] * across[:, None, :])
 

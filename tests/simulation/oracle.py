@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from fwk.lcm.messages import Header
+from fwk.model.service_channels import client_of
 from lcmtypes.core import header_t
 from tests.simulation.recorded import Log, Record
 
@@ -239,7 +240,7 @@ class _Queue:
         for kind in ("order", "question"):
             channels = component["channels"].get(kind, ())
             if component["class_name"] == "Worker":
-                self._sources += [(kind, one.partition("@")[2], one) for one in channels[1:]]
+                self._sources += [(kind, client_of(one), one) for one in channels[1:]]
         self._log = log
         self._holed = holed_channels(log) & {channel for _, _, channel in self._sources}
         self._seen: Counts = {}

@@ -3,6 +3,7 @@
 import pytest
 
 from fwk.engine.runner import Runner
+from fwk.model.service_channels import is_of_service
 from fwk.testing import system_of
 from tools.bench import idle
 
@@ -15,5 +16,5 @@ def test_idle_components_write_one_empty_message_a_tick(monkeypatch: pytest.Monk
     written = {channel: len(messages) for channel, messages in system.sent.items() if messages}
     assert written["world/field"] == written["cyan1/world_model"] == written["magenta1/pose"] == 5
     assert not {"world/ground_truth", "cyan1/team_message", "cyan1/obstacle_percepts"} & written.keys()
-    assert not [channel for channel in written if "@" in channel]
+    assert not [channel for channel in written if is_of_service(channel)]
     assert system.newest("cyan1/world_model").localized is False

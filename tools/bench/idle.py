@@ -8,6 +8,7 @@ whatever their components do: no match can be faster.
 from fwk.cli import launch
 from fwk.component.channels import Writes
 from fwk.engine.runner import Runner
+from fwk.model.service_channels import is_of_service
 
 
 def _nothing() -> None:
@@ -16,7 +17,7 @@ def _nothing() -> None:
 
 def _init(runner: Runner) -> None:
     """Lets the iterations of a component write its first channel that is not one of a service, and nothing else."""
-    interfaces = (writer for channel, writer in runner.writers.items() if "@" not in channel)
+    interfaces = (writer for channel, writer in runner.writers.items() if not is_of_service(channel))
     first: Writes[object] | None = next(interfaces, None)
     methods = vars(runner.component)
     methods["loop"] = _nothing if first is None else first.write

@@ -8,6 +8,7 @@ from typing import Any
 
 from fwk.control import runs
 from fwk.control.client import Client, ControlError, RefusedError
+from fwk.model.service_channels import is_of_service, service_of
 
 _TIMEOUT_S = 3.0  # a busy machine answers slowly
 
@@ -40,7 +41,7 @@ def open_channels(chosen: str | None) -> Iterable[str]:
 
 def commands(chosen: str | None) -> Iterable[str]:
     """Returns the services and commands of the run."""
-    return (each.partition("@")[0] for each in channels(chosen) if "@" in each)
+    return (service_of(each) for each in channels(chosen) if is_of_service(each))
 
 
 def types(chosen: str | None) -> dict[str, str]:

@@ -88,8 +88,7 @@ def view(
             if log:
                 feed = RerunFeed(name, channels or (), views or (), types)
                 end = _opened(feed, name, save, web, port, as_json)
-                with progress_of("reading", found) as progress:
-                    feed.read(found, progress)
+                _read(feed, found, shown=save is None)
             else:
                 with listening(chosen, "show its recording with --from") as (about, messages):
                     feed = RerunFeed(about["name"], channels or (), views or (), types, about["pid"])
@@ -118,6 +117,17 @@ def _opened(feed: "RerunFeed", name: str, save: Path | None, web: bool, port: in
     if as_json:
         say(json.dumps({"name": name, "port": port}))
     return lambda: None
+
+
+def _read(feed: "RerunFeed", log: Path, shown: bool) -> None:
+    """Reads a log into the feed; Ctrl-C ends a command that only shows it. A file would lack the rest."""
+    try:
+        with progress_of("reading", log) as progress:
+            feed.read(log, progress)
+    except KeyboardInterrupt as interrupt:
+        if not shown:
+            raise
+        raise typer.Exit(0) from interrupt
 
 
 def _check_free(*ports: int) -> None:

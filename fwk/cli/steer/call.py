@@ -10,14 +10,13 @@ from fwk.cli.arguments import seconds
 from fwk.cli.look.bb import field_lines
 from fwk.cli.run_options import Json, RunChoice, ask, asking
 from fwk.cli.steer.send import Fields, made
-from fwk.component.services import ANSWERS
 from fwk.control import runs
 from fwk.control.client import Client, RefusedError
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
 from fwk.lcm.type_registry import use_types_of
 from fwk.model.errors import hint
-from fwk.plan.wiring.command_wiring import OUTSIDE
+from fwk.model.service_channels import ANSWERS, OUTSIDE, client_of, service_channel, service_of
 from fwk.program import FAILED
 
 TIMEOUT_S = 10.0
@@ -79,7 +78,7 @@ def _owner(name: str, chosen: str | None) -> str:
     """Returns the component that carries the commands out, with its state, and whether the run is paused."""
     with runs.gateway(chosen) as gateway:
         rows = gateway.ask("channels")["channels"]
-    owner = next(row["writer"] for row in rows if row["channel"] == f"{name}@{ANSWERS}")
+    owner = next(row["writer"] for row in rows if row["channel"] == service_channel(name, ANSWERS))
     status = ask(chosen, "status", names=[owner])
     (component,) = status["components"]
     state = f"{owner} is {component['state']}{': ' if component['reason'] else ''}{component['reason']}"
@@ -89,7 +88,7 @@ def _owner(name: str, chosen: str | None) -> str:
 
 def _encoded(gateway: Client, name: str, fields: list[str], chosen: str | None) -> bytes:
     types = {row["channel"]: row["type"] for row in gateway.ask("channels")["channels"]}
-    known = {channel.partition("@")[0]: kind for channel, kind in types.items() if channel.endswith(f"@{OUTSIDE}")}
+    known = {service_of(channel): kind for channel, kind in types.items() if client_of(channel) == OUTSIDE}
     if name not in known:
         otherwise = "" if known else "no component of this run has a port for commands"
         raise RefusedError(f"no component carries out '{name}'; {hint(name, known, otherwise)}")

@@ -16,6 +16,7 @@ from fwk.lcm.lcm_file import INTEGERS
 from fwk.lcm.messages import MessageError
 from fwk.lcm.type_registry import use_types_of
 from fwk.model.errors import Problems, hint
+from fwk.model.service_channels import is_of_service
 from fwk.plan.files.source import read_value
 from fwk.program import BAD_INPUT
 
@@ -76,7 +77,7 @@ def _why_not(channel: str, row: dict[str, Any] | None, outside: list[str]) -> st
     """Returns why a channel cannot be sent to, and what to do."""
     if row is None:
         return f"no such channel; {hint(channel, outside) if outside else 'fwk bb list shows all channels'}"
-    if "@" in channel:
+    if is_of_service(channel):
         return "it carries commands; send one with 'fwk call'"
     without = f"--without {row['writer']} " if row["writer"] else ""
     file = f"in a launch file without {row['writer']}" if row["writer"] else "in the launch file"

@@ -5,15 +5,12 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from fwk.component.port import Port
-from fwk.component.services import ANSWERS
 from fwk.lcm import messages
 from fwk.model.errors import hint
 from fwk.model.names import CHANNEL_BYTES
 from fwk.model.plan import NOBODY
+from fwk.model.service_channels import ANSWERS, OUTSIDE, service_channel
 from fwk.plan.wiring.component_spec import ComponentSpec, Report
-
-OUTSIDE = "outside"
-"""Name of all tools together as one client; their requests come through the control socket."""
 
 
 @dataclass(frozen=True)
@@ -116,14 +113,14 @@ class CommandLines:
 
     def _join(self, target: str, owner: _End | None, senders: Sequence[_End]) -> None:
         command, reply = (owner or senders[0]).types
-        answers = f"{target}@{ANSWERS}"
+        answers = service_channel(target, ANSWERS)
         self._add(owner or senders[0], Line(answers, reply, owner.index if owner else NOBODY, _indices(senders)))
         names = []
         if owner:
-            names.append(f"{target}@{OUTSIDE}")
+            names.append(service_channel(target, OUTSIDE))
             self._add(owner, Line(names[-1], command, NOBODY, (owner.index,)))
         for sender in sorted(senders, key=lambda each: each.name):
-            names.append(f"{target}@{sender.name}")
+            names.append(service_channel(target, sender.name))
             self._add(sender, Line(names[-1], command, sender.index, (owner.index,) if owner else ()))
             self.ports[sender.index, sender.port.attribute] += (names[-1], answers)
         if owner:

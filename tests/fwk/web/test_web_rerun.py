@@ -177,6 +177,26 @@ def free_ports() -> int:
                 return port
 
 
+@pytest.mark.slow
+@pytest.mark.system
+def test_ctrl_c_while_a_log_is_read_ends_the_page(tmp_path: Path) -> None:
+    recording(tmp_path / "log.lcm", ticks=6)
+    endless = PROJECT.replace(
+        "        scene.bounds", "        print('drawing', flush=True)\n        time.sleep(60)\n        scene.bounds"
+    )
+    (tmp_path / "garden_view.py").write_text(f"import time\n{endless}")
+    words = ["view", "--from", "log.lcm", "--web", "--view", "garden_view", "--port", str(free_ports()), "--json"]
+    pipe = subprocess.PIPE
+    with subprocess.Popen([str(BIN / "fwk"), *words], cwd=tmp_path, stdout=pipe, stderr=pipe, text=True) as process:
+        assert process.stdout
+        assert process.stderr
+        assert "page" in json.loads(process.stdout.readline())
+        assert process.stdout.readline() == "drawing\n"
+        process.send_signal(signal.SIGINT)
+        assert process.wait(30) == 0
+        assert "Traceback" not in process.stderr.read()
+
+
 @pytest.fixture
 def page(tmp_path: Path, needs: Callable[..., None]) -> Iterator[str]:
     """The address of a page with a recording, for Chromium."""
