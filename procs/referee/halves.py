@@ -22,9 +22,10 @@ def after(half: int, score: Mapping[Team, int], rules: Rules) -> int | None:
     return half + 1 if rules.decide and drawn and half < PENALTIES else None
 
 
-def kicks_off(half: int) -> Team:
-    """Returns the team that begins a half: cyan the odd ones."""
-    return Team.CYAN if half % 2 else Team.MAGENTA
+def kicks_off(half: int, rules: Rules) -> Team:
+    """Returns the team that begins a part: the odd ones that of the first kick-off, the even ones the other."""
+    first = Team[rules.first_kick_off.upper()]
+    return first if half % 2 else first.other
 
 
 def ends_of(half: int, rules: Rules) -> Ends:

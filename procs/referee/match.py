@@ -23,7 +23,7 @@ class Match:
 
     def __init__(self, rules: Rules) -> None:
         self.rules = rules
-        self.state, self.team, spot = restarts.kick_off(Team.CYAN)
+        self.state, self.team, spot = restarts.kick_off(halves.kicks_off(halves.FIRST, rules))
         self.stopped = True
         """Robots take position; the ball is not to be touched."""
         self.held = False
@@ -87,9 +87,9 @@ class Match:
         ends = halves.ends_of(half, self.rules)
         self._changing_ends, self.ends = self._changing_ends or ends != self.ends, ends
         self.half, self.time_in_half_s, self._ball.left_at = half, 0.0, None
-        self.shootout = Shootout(self.rules.penalties, first or Team.CYAN) if half == halves.PENALTIES else None
-        kick_off = restarts.kick_off(first or halves.kicks_off(half))
-        self.interrupt(self._next_penalty() if self.shootout else kick_off, reason)
+        beginner = first or halves.kicks_off(half, self.rules)
+        self.shootout = Shootout(self.rules.penalties, beginner) if half == halves.PENALTIES else None
+        self.interrupt(self._next_penalty() if self.shootout else restarts.kick_off(beginner), reason)
         self._begun = False
 
     def kicks_off(self, half: int) -> Team:

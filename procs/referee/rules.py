@@ -4,6 +4,8 @@ The defaults are those of the rule book of the middle size league: of 2016 unles
 a year are the simulation's own.
 """
 
+from typing import Literal
+
 from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, PositiveFloat
 
 from procs.model.field import Field as SoccerField
@@ -26,6 +28,8 @@ class Rules(BaseModel):
     """Length of a half, stoppages included (2016: 15 min)."""
     half_time_s: NonNegativeFloat = 5.0
     """Break between the halves (2016: at most 10 min)."""
+    first_kick_off: Literal["cyan", "magenta"] = "cyan"
+    """Team with the kick-off of the first half, which a coin decides (2016); the other begins the second half."""
     change_ends: bool = True
     """The teams change ends after each half (2016)."""
     decide: bool = False

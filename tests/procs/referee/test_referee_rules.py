@@ -164,6 +164,18 @@ def test_magenta_kicks_off_second_half_and_then_the_match_ends() -> None:
     assert (referee.state, referee.score[Team.CYAN]) == (State.FROZEN, 0)
 
 
+def test_a_coin_gives_magenta_the_first_kick_off() -> None:
+    rules = Rules(first_kick_off="magenta", half_s=20.0, half_time_s=2.0, decide=True, overtime_half_s=20.0)
+    referee = Whistle(rules)
+    began = [referee.team]
+    for _ in range(4):
+        wait(referee, 22.1)
+        began.append(referee.team)
+    assert (referee.half, began) == (5, [Team.MAGENTA, Team.CYAN, Team.MAGENTA, Team.CYAN, Team.MAGENTA])
+    referee.begin_match()
+    assert (referee.half, referee.state, referee.team) == (1, State.KICK_OFF, Team.MAGENTA)
+
+
 def test_set_piece_waits_for_robots_that_are_misplaced() -> None:
     referee = Whistle(Rules(kick_off_stoppage_s=1.0, positions_s=4.0))
     away = {"cyan1": Point(-5.0, 0.0), "cyan2": Point(-0.7, 0.0), "magenta1": Point(4.0, 0.0)}
