@@ -106,13 +106,15 @@ class Agent(Component):
         if self.config.strategy == "greedy":
             return greedy.decide(view, game, held, field)
         idle = roles.Job(self.role.value.role or roles.DEFENDER, view.own.place)
-        if self._company.watch(view, self.clock.iteration_s) and view.localized:
-            job = job_among_silent(view, rank_of(self._robot, self.config.players), field, game)
+        company, players, duration_s = self._company, self.config.players, self.clock.iteration_s
+        kept = company.goal_is_kept(view, field, players, game.sent_off, duration_s)
+        if company.watch(view, duration_s) and view.localized:
+            job = job_among_silent(view, rank_of(self._robot, players, game.sent_off), field, game)
         else:
-            job = roles.assign(view, field, self.config.use_pressing, game).get(self._robot, idle)
+            job = roles.assign(view, field, self.config.use_pressing, game, kept).get(self._robot, idle)
         if not self.config.use_roles and game.free_play and job.role != roles.GOALKEEPER:
             job = roles.Job(roles.ATTACKER, view.ball.place)
-        order = self._tactics.decide(view, game, job, held, self.clock.iteration_s)
+        order = self._tactics.decide(view, game, job, held, duration_s)
         return roles.PASSER if self._tactics.barred else job.role, order
 
     def _tell_pass(self, told: pass_agreement_t) -> None:

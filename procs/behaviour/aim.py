@@ -85,9 +85,13 @@ def best_lob(start: Point, robots: Iterable[Robot], field: Field, bodies: Bodies
     """Returns the point of the opponents' goal line for a lob, and the room beside the robots that can block it.
 
     A robot, where it will be in a moment, blocks a lob only where the ball has not risen above it yet. Of targets with
-    enough room the one furthest from the other robots is best, as a lob that falls short is a shot.
+    enough room the one furthest from the other robots is best, as a lob that falls short is a shot. There is no room
+    for a lob that the kicker cannot kick.
     """
-    lob = ballistics.lob(math.dist(start, field.goal_centre(1.0)), bodies)
+    goal = field.goal_centre(1.0)
+    lob = ballistics.lob(math.dist(start, goal), bodies)
+    if not lob.is_possible(bodies):
+        return Aim(goal, -math.pi)
     near_m = lob.clear_m(bodies.robot_height_m + _OVER_M) + bodies.beside_m
     others = list(robots)
     near = [robot._replace(place=_soon(robot)) for robot in others if math.dist(start, robot.place) < near_m]

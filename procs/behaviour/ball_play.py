@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from procs.behaviour import aim
+from procs.behaviour import aim, formation
 from procs.behaviour.order import Order
 from procs.behaviour.passing import Passing
 from procs.behaviour.roles import GOALKEEPER
@@ -26,7 +26,7 @@ _MARKED_M = 1.0  # a mate with a rival so near gets no pass in free play
 _BACK_M = 1.0  # a pass may lose so much ground ...
 _FAR_BACK_M = 4.0  # ... or so much, if the ball must go
 _PRESSED_M, _PRESSED_S = 1.3, 0.6  # a rival so near, or in so short a time, presses the robot
-_DANGER_M = -4.0  # so near to the own goal a pressed robot rather clears the ball
+_DANGER_M = -4.0  # further back on the usual field, so near to the own goal, a pressed robot rather clears the ball
 _PATIENCE_S = 2.5  # with the ball, then a poorer shot or a pass will do
 _STUCK_S, _STUCK_M = 0.6, 0.3  # a ball that gets no further must go before the robot holds it for too long
 _FREE_S = 0.3  # a ball that is lost for longer is set free
@@ -94,7 +94,7 @@ class BallPlay:
 
     def _set_free(self, view: View) -> Order:
         """Returns the order of a taker that has no field player to pass to: the ball stays in play, near the robot."""
-        if view.ball.place.x_m < _DANGER_M:
+        if self._is_near_own_goal(view.ball.place):
             return self._clear(view)
         if self._kick is None or self._kick.skill != "push" or self._kick_s > _COMMITTED_S:
             self._kick, self._kick_s = self._push(view), 0.0
@@ -126,12 +126,16 @@ class BallPlay:
         alone = all(math.dist(other.place, view.own.place) > _CLOSE_M for other in view.opponents)
         if order is None and (pressed or impatient):
             order = None if alone else self._pass_on(view, _BACK_M)
-        in_danger = pressed and (view.own.place.x_m < _DANGER_M or self._held_s > _PATIENCE_S)
+        in_danger = pressed and (self._is_near_own_goal(view.own.place) or self._held_s > _PATIENCE_S)
         if order is None and (in_danger or self._held_s > 2 * _PATIENCE_S):
             order = self._clear(view)
         if order is None and (stuck or carried_m > _RELEASE_M):
             order = (None if alone else self._pass_on(view, _FAR_BACK_M)) or self._push(view)
         return order
+
+    def _is_near_own_goal(self, place: Point) -> bool:
+        along, _ = formation.scale(self.field)
+        return place.x_m < _DANGER_M * along
 
     def _keep(self, view: View) -> Order | None:
         """Returns the kick that was begun, with a pass to where its receiver is now; None if its way is blocked."""

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from procs.behaviour.bodies import Bodies
 from procs.behaviour.view import Ball, View
 from procs.model.field import Point
+from procs.model.kicker import STEEPEST_RAD
 
 _STEP_S, _HORIZON_S = 0.1, 4.0  # the ball's way is looked at in steps, up to the horizon
 _RESTING_M_S = 0.2  # a slower ball counts as at rest
@@ -47,13 +48,18 @@ class Lob(NamedTuple):
             return math.inf
         return self.speed_m_s * (self.lift_m_s - math.sqrt(squared)) / _GRAVITY_M_S2
 
+    def is_possible(self, bodies: Bodies) -> bool:
+        """Returns whether the kicker of a robot that stands is strong enough, and can kick so steeply."""
+        steep = math.atan2(self.lift_m_s, self.speed_m_s) > STEEPEST_RAD
+        return not steep and math.hypot(self.speed_m_s, self.lift_m_s) <= bodies.kick_limit_m_s
+
 
 def lob(distance_m: float, bodies: Bodies, carried_m_s: float = 0.0) -> Lob:
     """Returns the lob that is as high as a goalkeeper's top and a little more when it gets to the goal.
 
     Its flight of `distance_m` is a parabola. The robot that kicks drives towards the goal at `carried_m_s`, which makes
-    the lob faster than the kick; both are at most what the kicker can. From near the goal the ball is at the top of its
-    flight above the goalkeeper, from further away on its way down.
+    the lob faster than the kick. From near the goal the ball is at the top of its flight above the goalkeeper, from
+    further away on its way down; a weak kicker cannot kick that far, as `Lob.is_possible` tells.
     """
     distance_m = max(2 * _KEEPER_M, distance_m)
     rise_s = math.sqrt(2 * (bodies.robot_height_m + _OVER_M) / _GRAVITY_M_S2)

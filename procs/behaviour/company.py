@@ -1,7 +1,7 @@
-"""Robots that play on without a radio: whether mates are about, and the job of a robot that hears none of them."""
+"""Mates without a radio: whether they are about, and keep the goal, and the job of a robot that hears none of them."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 
 from procs.behaviour import ballistics
 from procs.behaviour.game import Game
@@ -21,15 +21,20 @@ from procs.model.field import Field
 from procs.model.robot import ABSENT, Player, number_of_player, team_of_player
 
 _REMEMBERED_S = 10.0  # longer than a stoppage, in which mates stand
+_KEEPS_S = 2.0  # a goalkeeper that is seen now and then stays one
 _PLAYS_M_S = 0.3  # a robot that was never faster may be out of order
 _STAY_S = 0.3  # an attacker keeps its role unless a mate is so much faster at the ball
 
 
 class Company:
-    """Tells a robot without mates on the radio whether it is alone; call `watch` once a tick."""
+    """Tells a robot whether it is alone, and whether a mate that it does not hear keeps the goal.
+
+    Call each method once a tick.
+    """
 
     def __init__(self) -> None:
         self._unseen_s = math.inf
+        self._unkept_s = math.inf
 
     def watch(self, view: View, duration_s: float) -> bool:
         """Returns whether the robot hears no mate that plays, but has heard one or seen one drive lately."""
@@ -38,11 +43,24 @@ class Company:
         self._unseen_s = 0.0 if hears or sees else self._unseen_s + duration_s
         return not hears and self._unseen_s < _REMEMBERED_S
 
+    def goal_is_kept(
+        self, view: View, field: Field, players: Mapping[str, Player], sent_off: Container[str], duration_s: float
+    ) -> bool:
+        """Returns whether the lowest number of the players is not heard, but a silent mate is in the penalty area."""
+        team = team_of_player(view.own.name, players)
+        numbers = [player.number for name, player in players.items() if player.team == team and name not in sent_off]
+        heard = {robot.number for robot in (view.own, *view.mates)}
+        silent = min(numbers, default=view.own.number) not in heard
+        seen = any(field.in_penalty_area(*mate.place, -1.0) for mate in view.silent_mates)
+        self._unkept_s = 0.0 if seen else self._unkept_s + duration_s
+        return silent and self._unkept_s < _KEEPS_S
 
-def rank_of(robot: str, players: Mapping[str, Player]) -> int:
-    """Returns how many players of the robot's team have a lower number."""
+
+def rank_of(robot: str, players: Mapping[str, Player], sent_off: Container[str] = ()) -> int:
+    """Returns how many players of the robot's team have a lower number, without those that were sent off."""
     team, number = team_of_player(robot, players), number_of_player(robot, players)
-    return sum(player.team == team and player.number < number for player in players.values())
+    team_mates = [player for name, player in players.items() if player.team == team and name not in sent_off]
+    return sum(player.number < number for player in team_mates)
 
 
 def job_among_silent(view: View, rank: int, field: Field, game: Game = PLAY) -> Job:

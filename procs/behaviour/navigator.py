@@ -165,8 +165,10 @@ class Navigator(Component):
         movers = obstacles.movers(model, self.config.limits.latency_s, number, players)
         now_m_s = Point(self._before.vx_m_s, self._before.vy_m_s)
         wanted_m_s, apart_m = Point(wanted.vx_m_s, wanted.vy_m_s), obstacles.apart_m(self._bodies)
-        change_m_s2 = self.config.limits.acceleration_m_s2
-        velocity = safe_velocity(wanted_m_s, now_m_s, place, movers, apart_m, change_m_s2)
+        limits = self.config.limits
+        velocity = safe_velocity(
+            wanted_m_s, now_m_s, place, movers, apart_m, limits.acceleration_m_s2, limits.speed_m_s
+        )
         return Velocity(*velocity, wanted.omega_rad_s)
 
     def _pose(self, model: world_model_t) -> Pose:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from lcmtypes.soccer import world_model_t
 from procs.behaviour.bodies import Bodies
+from procs.behaviour.company import rank_of
 from procs.behaviour.goals import Goals
 from procs.behaviour.obstacles import reachable
 from procs.model.field import Field, Point
@@ -13,10 +14,14 @@ from procs.model.robot import ABSENT, Player, number_of_mate, number_of_player
 def is_field_player(model: world_model_t, robot: str, players: Mapping[str, Player]) -> bool:
     """Returns whether the robot is a field player: a mate on the field has a lower number, and so keeps the goal.
 
-    A robot that is alone may go everywhere.
+    A robot that hears no mate, but sees some, is one unless it has the lowest number of all players. A robot that is
+    alone may go everywhere.
     """
     number = number_of_player(robot, players)
-    return any(mate.role != ABSENT and number_of_mate(mate, players) < number for mate in model.mates)
+    heard = [mate for mate in model.mates if mate.role != ABSENT]
+    if model.silent_mates and not heard:
+        return rank_of(robot, players) > 0
+    return any(number_of_mate(mate, players) < number for mate in heard)
 
 
 class Permitted:

@@ -34,11 +34,14 @@ class Job(NamedTuple):
     """Default place of the role."""
 
 
-def assign(view: View, field: Field, presses: bool = False, game: Game = PLAY) -> dict[str, Job]:
+def assign(
+    view: View, field: Field, presses: bool = False, game: Game = PLAY, goal_is_kept: bool = False
+) -> dict[str, Job]:
     """Jobs of the own robot, if it is localized, and of its mates, by name.
 
     The lowest number keeps the goal unless it is alone, and then at a penalty of the other team; no other does while
-    that one is on the field and does not play, as field players may not stay in the areas. Of the others the receiver
+    that one is on the field and does not play, or if `goal_is_kept` by a mate without a radio, as field players may not
+    stay in the areas. Of the others the receiver
     of a pass on its way attacks, else the robot that meets the ball first. A team that `presses` sends a second robot
     in play if an opponent is at the ball sooner. The rest fill the formation, at set pieces within the rules, so that
     they drive little. The order of the mates does not matter.
@@ -46,7 +49,7 @@ def assign(view: View, field: Field, presses: bool = False, game: Game = PLAY) -
     present = [robot for robot in (*view.mates, view.own) if robot is not view.own or view.localized]
     team = sorted((robot for robot in present if robot.role != ABSENT), key=lambda robot: robot.name)
     jobs: dict[str, Job] = {}
-    if len(team) > 1 or (team and game.faces_penalty):
+    if not goal_is_kept and (len(team) > 1 or (team and game.faces_penalty)):
         keeper = min(present, key=lambda robot: (robot.number, robot.name))
         if keeper in team:
             jobs[keeper.name] = Job(GOALKEEPER, field.goal_centre(-1.0))

@@ -140,6 +140,7 @@ class Tactics:
 
     def _keep(self, view: View, game: Game, holds_ball: bool) -> Order:
         if game.free_play and holds_ball:
+            self._drop_late_pass()
             return self._agreed(self._play.relieve(view))
         self._fetches = game.free_play and view.ball.known and keeper_takes(view, self.field, self._fetches)
         if self._fetches:
@@ -210,12 +211,16 @@ class Tactics:
             order = self._play.take_set_piece(view, self._receiver)
             self._receiver = order.receiver or self._receiver
             return self._agreed(order)
-        if self.passing.late:
-            self.passing.drop()
+        self._drop_late_pass()
         order = self._play.decide(view)
         if order.skill == "dribble":
             self._ask_early(view)
         return self._agreed(order)
+
+    def _drop_late_pass(self) -> None:
+        """Looks for another mate if the one that was asked has not accepted in time."""
+        if self.passing.late:
+            self.passing.drop()
 
     def _ask_early(self, view: View) -> None:
         """Announces the pass that may follow, so that it need not wait for an answer."""

@@ -32,8 +32,12 @@ _GROWTH_M_S = 0.2
 """Further room for each second until robots meet: velocities are known roughly, and robots change them."""
 _LEAST_M_S = 1.0
 """Velocities to choose from are at least so fast, so that a robot that stands can evade."""
+_STANDS_M_S = 1e-6
+"""A slower robot has no direction."""
 _FASTEST_M_S = 4.0
 """Speed at which two robots approach each other at most."""
+_ALIKE = 9
+"""Costs that are equal to so many decimals are equal."""
 _SPEED_SHARES = (1.0, 0.6, 0.25)
 _TURNS_RAD = (0.0, 0.35, -0.35, 0.8, -0.8, 1.4, -1.4, 2.2, -2.2, math.pi)
 _CHANGES = [(share * math.cos(turn), share * math.sin(turn)) for share in _SPEED_SHARES for turn in _TURNS_RAD]
@@ -54,12 +58,24 @@ class Mover(NamedTuple):
 
 
 def safe_velocity(
-    wanted_m_s: Point, now_m_s: Point, place: Point, movers: Sequence[Mover], apart_m: float, change_m_s2: float
+    wanted_m_s: Point,
+    now_m_s: Point,
+    place: Point,
+    movers: Sequence[Mover],
+    apart_m: float,
+    change_m_s2: float,
+    fastest_m_s: float = math.inf,
 ) -> Point:
     """Returns the wanted velocity, or the best one near it that leads to no collision soon.
 
-    `now_m_s` is the present velocity, `apart_m` the distance of the middles of two robots that touch, and
-    `change_m_s2` the limit of the acceleration.
+    Args:
+        wanted_m_s: velocity without other robots.
+        now_m_s: present velocity.
+        place: of the robot.
+        movers: the other robots.
+        apart_m: distance of the middles of two robots that touch.
+        change_m_s2: limit of the acceleration.
+        fastest_m_s: limit of the speed; neither the wanted nor the present velocity exceeds it.
     """
     near = [mover for mover in movers if math.dist(mover.place, place) < apart_m + _FASTEST_M_S * _HORIZON_S]
     if not near:
@@ -67,15 +83,20 @@ def safe_velocity(
     others = _Others(near, place, now_m_s, apart_m)
     if others.dangers(np.array([wanted_m_s]), change_m_s2)[0] == 0.0:
         return wanted_m_s
-    candidates = _candidates(wanted_m_s, now_m_s)
+    nearest = min(near, key=lambda mover: math.dist(mover.place, place))
+    away = Point(place.x_m - nearest.place.x_m, place.y_m - nearest.place.y_m)
+    candidates = _candidates(wanted_m_s, now_m_s, away, min(_LEAST_M_S, fastest_m_s))
     costs = np.sqrt(((candidates - wanted_m_s) ** 2).sum(axis=1)) + others.dangers(candidates, change_m_s2)
-    return Point(*candidates[int(costs.argmin())].tolist())
+    # Rounding errors must not decide between equals; the first one turns least.
+    return Point(*candidates[int(costs.round(_ALIKE).argmin())].tolist())
 
 
-def _candidates(wanted_m_s: Point, now_m_s: Point) -> Floats:
-    speed_m_s = max(_LEAST_M_S, math.hypot(*wanted_m_s))
-    scale = speed_m_s / max(1e-9, math.hypot(*wanted_m_s))
-    x, y = (wanted_m_s.x_m * scale, wanted_m_s.y_m * scale) if scale < 1e6 else (speed_m_s, 0.0)
+def _candidates(wanted_m_s: Point, now_m_s: Point, away: Point, least_m_s: float) -> Floats:
+    """Returns velocities around the wanted one; a robot that wants to stand turns `away` from the nearest robot."""
+    wanted = math.hypot(*wanted_m_s)
+    along, length = (wanted_m_s, wanted) if wanted > _STANDS_M_S else (away, math.hypot(*away))
+    scale = max(least_m_s, wanted) / max(_STANDS_M_S, length)
+    x, y = along.x_m * scale, along.y_m * scale
     turned = [(x * cos - y * sin, x * sin + y * cos) for cos, sin in _CHANGES]
     return np.array([wanted_m_s, *turned, now_m_s, (0.0, 0.0)])
 

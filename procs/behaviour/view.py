@@ -26,7 +26,7 @@ class Frame(NamedTuple):
 
     def point(self, x_m: float, y_m: float) -> Point:
         """Returns a point, or a velocity, in the other frame."""
-        return Point(self.sign * x_m, self.sign * y_m)
+        return Point(self.sign * x_m + 0.0, self.sign * y_m + 0.0)  # no -0.0, whose sign would be a side
 
     def heading_rad(self, heading_rad: float) -> float:
         """Returns a direction in the other frame."""

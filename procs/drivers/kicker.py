@@ -1,6 +1,5 @@
 """Driver of the kicker: kicks once the robot has the ball and the kicker is charged, and switches ball handling."""
 
-import math
 from collections import deque
 from typing import NamedTuple
 
@@ -9,9 +8,9 @@ from pydantic import PositiveFloat
 from fwk import Clock, Component, Config, Logger, Reads, Request, Serves, Writes
 from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_drive_t, kicker_sensor_t, kicker_state_t
 from procs.model.geometry import BOUND, clamp, plausible
+from procs.model.kicker import STEEPEST_RAD
 from procs.model.robot import ROBOT, RobotModel
 
-_STEEPEST_RAD = math.pi / 3  # highest elevation of a lob
 _KICKS_MAX = 2**31 - 1
 """Kicks are numbered from 1 to this number, then from 1 again."""
 _UNDER_WAY_MAX = 8
@@ -107,7 +106,7 @@ class Kicker(Component):
             request.accept()
             newest_id = self._under_way[-1].kick_id if self._under_way else sensor.kick_id
             drive.kick_id = newest_id % _KICKS_MAX + 1
-            drive.elevation_rad = clamp(request.value.elevation_rad, 0.0, _STEEPEST_RAD)
+            drive.elevation_rad = clamp(request.value.elevation_rad, 0.0, STEEPEST_RAD)
             drive.kick_m_s = self.config.robot.kicked_m_s(request.value.speed_m_s, drive.elevation_rad)
             self._under_way.append(_Asked(drive.kick_id, drive.kick_m_s, drive.elevation_rad))
             self._asked_us = self.clock.now_us

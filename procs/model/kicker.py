@@ -1,7 +1,11 @@
-"""Whether a robot's kicker tells that the ball is held."""
+"""Limits of a robot's kicker, and whether it tells that the ball is held."""
+
+import math
 
 from lcmtypes.robot import kicker_state_t
 
+STEEPEST_RAD = math.pi / 3
+"""Highest elevation of a kick."""
 _TOLD_S = 0.5
 """A kicker that is silent for longer does not know whether the ball is in the mouth."""
 

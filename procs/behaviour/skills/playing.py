@@ -122,7 +122,7 @@ class _Kick(_WithBall):
     def __init__(self) -> None:
         super().__init__()
         self._running_s = 0.0
-        self._heading_rad = math.nan
+        self._heading_rad, self._heading_s = math.nan, 0.0  # when it was last looked at, and for how long it is so
         self._wanted_rad = self._kick_m_s = 0.0
         self._off_rad = math.nan
         self._on_target = self._asked_for = False
@@ -141,15 +141,17 @@ class _Kick(_WithBall):
 
     def _watch(self, scene: Scene) -> Scene:
         """Computes the aim of this tick, unless the kick was asked for and was not refused."""
+        self._heading_s += scene.duration_s
         if self.state in ("kick", "wait for the kicker") and scene.kicked is not False:
             return scene
-        scene, own, self._asked_for = super()._watch(scene), scene.view.own, False
+        self._asked_for = self.state == "kick"
+        scene, own = super()._watch(scene), scene.view.own
         distance_m = math.dist(own.place, scene.place)
         speed_m_s = self._speed_m_s(scene, distance_m)
         self._running_s += scene.duration_s
         known = not math.isnan(self._heading_rad)
-        turn_rad_s = wrap_rad(own.heading_rad - self._heading_rad) / scene.duration_s if known else 0.0
-        self._heading_rad = own.heading_rad
+        turn_rad_s = wrap_rad(own.heading_rad - self._heading_rad) / self._heading_s if known else 0.0
+        self._heading_rad, self._heading_s = own.heading_rad, 0.0
         slowed_rad_s = math.copysign(max(0.0, abs(turn_rad_s) - self._SLOWING_RAD_S), turn_rad_s)
         mouth_m_s = _mouth_velocity_m_s(scene.view, slowed_rad_s)
         self._wanted_rad, self._kick_m_s = self._aim(scene, speed_m_s, mouth_m_s)
@@ -170,7 +172,7 @@ class _Kick(_WithBall):
         return self._running_s > self._TIMEOUT_S
 
     def _ready(self, scene: Scene) -> bool:
-        return self._on_target and scene.charged and scene.holds_ball
+        return self._on_target and scene.charged and scene.holds_ball and not self._asked_for
 
     def _kicked(self, scene: Scene) -> bool:
         return bool(scene.kicked)

@@ -5,7 +5,7 @@ import math
 import pymunk
 import pytest
 
-from procs.behaviour import ballistics
+from procs.behaviour import aim, ballistics
 from procs.behaviour.bodies import USUAL
 from procs.behaviour.view import Ball
 from procs.model.ball import BALL, BallModel
@@ -88,3 +88,15 @@ def test_ball_that_shoots_past_a_robot_is_met_from_every_place() -> None:
         meeting = course.meet(place)
         assert meeting.time_s == pytest.approx(place.x_m / 9.4, abs=0.1)
         assert math.dist(meeting.place, place) < 0.5
+
+
+@pytest.mark.parametrize(("limit_m_s", "away_m", "possible"), [(12, 10.5, True), (8, 4.0, True), (8, 10.0, False)])
+def test_weak_kicker_cannot_lob_from_far_away(limit_m_s: float, away_m: float, possible: bool) -> None:
+    bodies = USUAL._replace(kick_limit_m_s=limit_m_s)
+    assert ballistics.lob(away_m, bodies).is_possible(bodies) == possible
+    start = Point(FIELD.half_length_m - away_m, 0.0)
+    assert (aim.best_lob(start, [], FIELD, bodies).free_rad > 0.0) == possible
+
+
+def test_lob_that_would_be_too_steep_is_impossible() -> None:
+    assert not ballistics.lob(0.9, USUAL).is_possible(USUAL)

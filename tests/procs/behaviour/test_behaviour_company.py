@@ -7,7 +7,7 @@ from lcmtypes.soccer import ball_estimate_t, game_state_t, robot_estimate_t, wor
 from procs.behaviour.agent import Agent
 from procs.behaviour.company import Company, job_among_silent, rank_of
 from procs.behaviour.game import Game, Whose
-from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, PASSER, SUPPORTER
+from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, PASSER, SUPPORTER, assign
 from procs.behaviour.tactics import Tactics
 from procs.behaviour.view import Robot, View
 from procs.model.field import Point
@@ -99,3 +99,26 @@ def test_ball_unseen_at_a_set_piece_lies_on_its_spot(x_m: float, role: str) -> N
     bench.port("game_state").put(game)
     bench.iterate()
     assert bench.port("role").sent[-1].role == role
+
+
+def test_robot_sent_off_does_not_count_for_the_rank() -> None:
+    assert [rank_of(name, PLAYERS, ("cyan1", "magenta2")) for name in ("cyan2", "cyan3")] == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("heard", "kept"), [("cyan3", True), ("cyan1", False)], ids=["the lowest is silent", "the lowest speaks"]
+)
+def test_silent_robot_in_the_penalty_area_keeps_the_goal(heard: str, kept: bool) -> None:
+    company, own, mates = Company(), robot("cyan2", 0.0, 0.0), (robot(heard, 1.0, 1.0),)
+    seen = view(own, BALL, mates)._replace(silent_mates=(silent(-10.5, 0.0),))
+    assert company.goal_is_kept(seen, FIELD, PLAYERS, (), 1.0) == kept
+    assert company.goal_is_kept(view(own, BALL, mates), FIELD, PLAYERS, (), 1.0) == kept, "it is seen now and then"
+    assert not company.goal_is_kept(view(own, BALL, mates), FIELD, PLAYERS, (), 1.5)
+    assert not company.goal_is_kept(seen, FIELD, PLAYERS, ("cyan1",), 1.0)
+
+
+def test_no_second_keeper_joins_one_without_a_radio() -> None:
+    team = (robot("cyan3", -3.0, 1.0), robot("cyan4", -3.0, -1.0))
+    seen = view(robot("cyan2", -4.0, 0.0), BALL, team)._replace(silent_mates=(silent(-10.5, 0.0),))
+    assert assign(seen, FIELD)["cyan2"].role == GOALKEEPER
+    assert GOALKEEPER not in {found.role for found in assign(seen, FIELD, goal_is_kept=True).values()}

@@ -199,3 +199,16 @@ def test_stopped_navigator_leaves_the_motors_off() -> None:
     bench.finalize()
     command = newest(bench, "motor_command")
     assert (command.enabled, command.vx_m_s, command.vy_m_s, command.omega_rad_s) == (False, 0.0, 0.0, 0.0)
+
+
+def test_slow_robot_evades_no_faster_than_it_may() -> None:
+    bench = Bench(Navigator, "cyan2/navigator", limits={"speed_m_s": 0.5})
+    for _ in range(20):
+        rival = estimate(1.5, 0.1)
+        rival.vx_m_s = -1.5
+        put(bench, "world_model", localized=True, opponents=[rival], n_opponents=1)
+        put(bench, "odometry")
+        put(bench, "drive_target", avoid_robots=True)
+        bench.iterate()
+    speeds_m_s = [math.hypot(command.vx_m_s, command.vy_m_s) for command in bench.port("motor_command").sent]
+    assert max(speeds_m_s) == pytest.approx(0.5)

@@ -185,3 +185,13 @@ def test_both_sides_have_to_agree_on_a_pass_that_was_played() -> None:
     assert receiver([waits], view(waits, ROLLING, (asking,))) is None
     assert receiver([waits], view(waits, ROLLING, (PASSER._replace(role=roles.PASSER),))) is None
     assert receiver([NEAR], view(NEAR, ROLLING, (passed,))) is None
+
+
+def test_keeper_does_not_pass_to_a_mate_that_does_not_answer() -> None:
+    own, mate = robot("cyan1", -9.33, 0.0), robot("cyan3", -6.0, 2.0)
+    seen = view(own, ball(-9.0, 0.0), (mate,), (robot("", -8.2, -0.4),))
+    tactics = Tactics(FIELD)
+    orders = [tactics.decide(seen, PLAY, job(roles.GOALKEEPER), True, TICK_S) for _ in range(round(1.0 / TICK_S))]
+    assert [order.skill for order in orders].count("aim") > 5
+    assert "pass" not in {order.skill for order in orders}
+    assert orders[-1].skill == "clear"

@@ -7,7 +7,7 @@ import pytest
 
 from fwk.testing import Bench
 from lcmtypes.core import answer_t
-from lcmtypes.soccer import ball_estimate_t, mate_estimate_t, world_model_t
+from lcmtypes.soccer import ball_estimate_t, mate_estimate_t, robot_estimate_t, world_model_t
 from procs.behaviour.bodies import USUAL
 from procs.behaviour.navigator import Navigator
 from procs.behaviour.permitted import Permitted, is_field_player
@@ -75,3 +75,10 @@ def test_permitted_place_is_the_nearest() -> None:
 @pytest.mark.parametrize(("robot", "keeper", "plays"), [("cyan2", True, True), ("cyan2", False, False)])
 def test_robot_with_a_lower_mate_is_a_field_player(robot: str, keeper: bool, plays: bool) -> None:
     assert is_field_player(model(0.0, 0.0, 0.0, keeper), robot, PLAYERS) == plays
+
+
+@pytest.mark.parametrize(("robot", "plays"), [("cyan1", False), ("cyan2", True), ("cyan5", True)])
+def test_robot_that_only_sees_mates_goes_by_its_number(robot: str, plays: bool) -> None:
+    made = model(0.0, 0.0, 0.0, keeper=False)
+    made.silent_mates, made.n_silent_mates = [robot_estimate_t(x_m=-10.5)], 1
+    assert is_field_player(made, robot, PLAYERS) == plays

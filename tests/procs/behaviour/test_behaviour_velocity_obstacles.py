@@ -106,3 +106,17 @@ def test_robot_slows_down_rather_than_run_into_a_row() -> None:
 def test_robot_beside_another_may_leave() -> None:
     near = Mover(Point(0.5, 0.0), REST, gives_way=False)
     assert safe_velocity(Point(-2.0, 0.0), REST, REST, [near], APART_M, 3.0) == (-2.0, 0.0)
+
+
+@pytest.mark.parametrize("bearing_rad", [0.1, 1.0, 2.0, 3.0, -0.7, -2.5])
+def test_standing_robot_evades_alike_from_all_directions(bearing_rad: float) -> None:
+    """The robot that keeps its place once evaded along the world's x axis, so that the teams played differently."""
+    chosen = []
+    for turn_rad in (0.0, math.pi, 0.4):
+        cos, sin = math.cos(bearing_rad + turn_rad), math.sin(bearing_rad + turn_rad)
+        place, velocity = Point(1.5 * cos - 0.1 * sin, 1.5 * sin + 0.1 * cos), Point(-1.5 * cos, -1.5 * sin)
+        safe = safe_velocity(REST, REST, REST, [Mover(place, velocity, gives_way=False)], APART_M, 3.0)
+        assert safe != REST
+        chosen.append((safe.x_m * cos + safe.y_m * sin, safe.y_m * cos - safe.x_m * sin))
+    assert chosen[1] == pytest.approx(chosen[0], abs=1e-9)
+    assert chosen[2] == pytest.approx(chosen[0], abs=1e-9)

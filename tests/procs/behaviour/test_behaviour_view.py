@@ -60,3 +60,8 @@ def test_silent_mate_is_in_the_way_but_no_player() -> None:
     view = seen(silent_mates=[robot_estimate_t(x_m=2.0), robot_estimate_t(x_m=math.nan)])
     assert (view.mates, view.opponents) == ((), ())
     assert [robot.place for robot in view.others] == [Point(2.0, 0.0)]
+
+
+def test_zero_of_one_team_is_that_of_the_other() -> None:
+    turned = [Frame(sign).point(0.0, -0.0) for sign in (1.0, -1.0)]
+    assert [math.copysign(1.0, value) for point in turned for value in point] == [1.0] * 4
