@@ -7,64 +7,23 @@ import numpy as np
 import pytest
 
 from fwk.testing import system_of
-from lcmtypes.robot import kicker_state_t, motor_command_t
+from lcmtypes.robot import motor_command_t
 from lcmtypes.soccer import (
-    ball_estimate_t,
     ball_percept_t,
     field_t,
-    game_state_t,
     ground_truth_t,
     match_event_t,
     pose_t,
     robot_estimate_t,
-    skill_status_t,
     team_inbox_t,
     team_message_t,
     true_robot_t,
-    world_model_t,
 )
 from procs.evaluation.beliefs import believed
-from procs.evaluation.conduct import conducted
 from procs.evaluation.match import samples_of
-from procs.evaluation.piece import Piece, piece_of
-from procs.evaluation.possession import possession
+from procs.evaluation.piece import piece_of
 from procs.evaluation.table import MEASURES, rows_of
-
-FIRST = 100  # tick; measuring begins some seconds after the start
-
-
-def robot(name: str, x_m: float, y_m: float, vx_m_s: float = 0.0) -> true_robot_t:
-    made = true_robot_t()
-    made.name, made.x_m, made.y_m, made.vx_m_s = name, x_m, y_m, vx_m_s
-    return made
-
-
-def event(kind: int, name: str, speed_m_s: float = 0.0) -> match_event_t:
-    made = match_event_t()
-    made.kind, made.robot, made.speed_m_s = kind, name, speed_m_s
-    return made
-
-
-def model(ball_m: tuple[float, float], deviation_m: float = 0.1, **values: Any) -> world_model_t:
-    made = world_model_t()
-    made.ball = ball_estimate_t()
-    made.ball.known = True
-    made.ball.x_m, made.ball.y_m = ball_m
-    made.ball.covariance = np.diag([deviation_m**2] * 4).tolist()
-    made.localized = True
-    for name, value in values.items():
-        setattr(made, name, value)
-    return made
-
-
-def piece(robots: list[true_robot_t], ticks: int = 40, vx_m_s: float = 1.0) -> Piece:
-    """Makes a piece in which the ball rolls along x, from the centre, and all robots stand still."""
-    made = Piece(0.05)
-    for tick in range(FIRST, FIRST + ticks):
-        truth = made.truth[tick] = ground_truth_t()
-        truth.robots = robots
-        truth.ball_x_m, truth.ball_vx_m_s = (tick - FIRST) * 0.05 * vx_m_s, vx_m_s
-    return made
+from tests.procs.evaluation.pieces import FIRST, event, model, piece, robot
 
 
 def test_ball_errors_are_those_of_the_estimate() -> None:
@@ -214,123 +173,6 @@ def test_lag_of_an_opponent_is_its_distance_behind_by_its_speed() -> None:
     assert rows["opponents, lag"] == pytest.approx(0.1)
     assert rows["opponents, position"] == pytest.approx(0.2)
     assert (rows["opponents known"], rows["opponents that do not exist"]) == (1.0, 0.0)
-
-
-@pytest.mark.parametrize(
-    ("others", "violated"),
-    [([(3.1, 0.0), (-2.1, 0.0)], False), ([(2.8, 0.0)], True), ([(3.1, 0.0), (-1.8, 0.0)], True)],
-)
-def test_distances_count_when_a_set_piece_is_released(others: list[tuple[float, float]], violated: bool) -> None:
-    names = ("magenta1", "cyan2")
-    robots = [robot("cyan1", -0.5, 0.0), *(robot(name, *at) for name, at in zip(names, others, strict=False))]
-    made = piece(robots, ticks=2, vx_m_s=0.0)
-    for tick, stopped in ((FIRST, True), (FIRST + 1, False)):
-        game = made.game[tick] = game_state_t()
-        game.state, game.state_team, game.stopped = game_state_t.FREE_KICK, game_state_t.TEAM_CYAN, stopped
-    assert conducted(made)["distance violated at restarts"].tolist() == [violated]
-
-
-@pytest.mark.parametrize(("sent_off", "violated"), [([], True), (["magenta2"], False)])
-def test_robots_that_were_sent_off_violate_nothing(sent_off: list[str], violated: bool) -> None:
-    made = piece([robot("cyan1", -0.5, 0.0), robot("magenta2", -4.0, 7.5)], ticks=2, vx_m_s=0.0)
-    for tick, stopped in ((FIRST, True), (FIRST + 1, False)):
-        game = made.game[tick] = game_state_t()
-        game.state, game.state_team, game.stopped = game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, stopped
-        game.sent_off = sent_off
-    assert conducted(made)["half violated at kick-offs"].tolist() == [violated]
-
-
-@pytest.mark.parametrize(
-    ("kicker", "after_s", "taken"),
-    [("cyan1", 6.9, [True]), ("cyan1", 7.2, [False]), ("magenta1", 1.0, [False])],
-)
-def test_restart_is_taken_once_its_team_kicks(kicker: str, after_s: float, taken: list[bool]) -> None:
-    made = piece([robot("cyan1", 0.0, 0.0), robot("magenta1", 3.0, 1.0)], ticks=200, vx_m_s=0.0)
-    for tick in made.truth:
-        game = made.game[tick] = game_state_t()
-        game.state, game.state_team, game.stopped = game_state_t.THROW_IN, game_state_t.TEAM_CYAN, tick < FIRST + 10
-    made.events = {FIRST + 10 + round(after_s / 0.05): [event(match_event_t.KICK, kicker, 3.0)]}
-    assert conducted(made)["restarts taken within 7 s"].tolist() == taken
-
-
-@pytest.mark.parametrize("until", [100, 200])
-def test_restart_that_is_cut_short_does_not_count(until: int) -> None:
-    """Either the piece ends, or the referee stops the game again."""
-    made = piece([robot("cyan1", 0.0, 0.0)], ticks=until, vx_m_s=0.0)
-    for tick in made.truth:
-        game = made.game[tick] = game_state_t()
-        game.state_team, game.stopped = game_state_t.TEAM_CYAN, not 10 <= tick - FIRST < 100
-    assert conducted(made)["restarts taken within 7 s"].tolist() == []
-
-
-def passed(toucher: str, ticks: int = 200, ball_m_s: float = 0.0) -> Piece:
-    """Returns a piece with a pass from cyan1, which another robot then touches and keeps if it is cyan2."""
-    made = piece([robot("cyan1", 0.0, 0.0), robot("cyan2", 3.0, 0.0), robot("magenta1", 3.0, 1.0)], ticks, ball_m_s)
-    made.game = {tick: _playing() for tick in made.truth}
-    status, holding = skill_status_t(), kicker_state_t()
-    status.skill, holding.ball_held = "pass", True
-    made.by_robot |= {
-        "skill_status": {"cyan1": {FIRST: status}},
-        "kicker_state": {"cyan2": dict.fromkeys(made.truth, holding), "magenta1": {}},
-    }
-    made.events = {FIRST + 1: [event(match_event_t.KICK, "cyan1", 4.0)]}
-    touching = [event(match_event_t.TOUCH, toucher)] if toucher else []
-    made.events |= dict.fromkeys(range(FIRST + 10, FIRST + 20), touching)
-    return made
-
-
-@pytest.mark.parametrize(("toucher", "controlled"), [("cyan2", True), ("magenta1", False), ("", False)])
-def test_pass_is_controlled_once_a_mate_holds_the_ball(toucher: str, controlled: bool) -> None:
-    assert conducted(passed(toucher))["passes controlled by the receiver"].tolist() == [controlled]
-
-
-def test_pass_whose_end_the_piece_does_not_show_does_not_count() -> None:
-    assert conducted(passed("", ticks=40))["passes controlled by the receiver"].tolist() == []
-
-
-@pytest.mark.parametrize(("ball_m_s", "found"), [(1.0, []), (10.0, [False])])
-def test_pass_that_a_foul_interrupts_does_not_count(ball_m_s: float, found: list[bool]) -> None:
-    """A pass out of the field does."""
-    made = passed("", ball_m_s=ball_m_s)
-    for tick in list(made.truth)[30:]:
-        made.game[tick].stopped = True
-    assert conducted(made)["passes controlled by the receiver"].tolist() == found
-
-
-def test_captures_that_bounce_and_a_free_ball_are_counted() -> None:
-    made = piece([robot("cyan1", 0.0, 0.0)], ticks=60)
-    made.game = dict.fromkeys(made.truth, _playing())
-    made.events = {FIRST + 10: [event(match_event_t.TOUCH, "cyan1")]}
-    made.events |= {tick: [event(match_event_t.TOUCH, "cyan1")] for tick in range(FIRST + 30, FIRST + 60)}
-    found = possession(made)
-    assert found["captures that bounce"].tolist() == [True, False]
-    assert found["ball free"].mean() == pytest.approx(23 / 60, abs=0.04)
-
-
-@pytest.mark.parametrize(("skill", "shots"), [("shoot", 1), ("lob", 1), ("pass", 0)])
-def test_shots_are_fast_kicks_of_the_skills_that_shoot(skill: str, shots: int) -> None:
-    made = piece([robot("cyan1", 0.0, 0.0)])
-    status = skill_status_t()
-    status.skill = skill
-    made.by_robot["skill_status"] = {"cyan1": dict.fromkeys(made.truth, status)}
-    made.events = {FIRST + at: [event(match_event_t.KICK, "cyan1", speed)] for at, speed in ((5, 10.0), (20, 3.0))}
-    assert possession(made)["shots"][0, 0] == shots
-
-
-@pytest.mark.parametrize(("cyan", "magenta", "won", "lost"), [(2, 1, 1.0, 0.0), (1, 1, 0.0, 0.0), (0, 1, 0.0, 1.0)])
-def test_matches_are_won_and_lost_by_goals(cyan: int, magenta: int, won: float, lost: float) -> None:
-    made = piece([robot("cyan1", 0.0, 0.0)])
-    game = _playing()
-    game.score_cyan, game.score_magenta = cyan, magenta
-    made.game = dict.fromkeys(made.truth, game)
-    found = possession(made)
-    assert (found["won by cyan"].tolist(), found["lost by cyan"].tolist()) == ([won], [lost])
-
-
-def _playing() -> game_state_t:
-    game = game_state_t()
-    game.state = game_state_t.PLAY
-    return game
 
 
 @pytest.mark.slow
