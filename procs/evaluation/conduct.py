@@ -15,6 +15,7 @@ from procs.model.robot import number_in
 from procs.model.teams import Ends, Team
 from procs.referee.positions import in_wrong_half, too_near
 from procs.referee.restarts import Restart
+from procs.referee.sight import LEAVES
 
 _HEAVY_M_S, _LIGHT_M_S = 3.0, 1.0
 _CONTROL_S = 0.3
@@ -94,24 +95,24 @@ def _passes(piece: Piece) -> list[bool]:
     return controlled
 
 
-def _is_in_field(piece: Piece, tick: int) -> bool:
-    truth = piece.truth[tick]
-    return piece.measures.in_field(truth.ball_x_m, truth.ball_y_m)
+def _left(piece: Piece, *ticks: int) -> bool:
+    """Returns whether the ball left the field in one of the ticks."""
+    return any(event.kind in LEAVES for tick in ticks for event in piece.events.get(tick, ()))
 
 
 def _is_controlled(
     piece: Piece, kicked: int, passer: str, kickers: dict[str, dict[int, kicker_state_t]]
 ) -> bool | None:
-    """Returns whether a mate controls a pass; no mate does if a rival touches the ball first, or no robot.
+    """Returns whether a mate controls a pass; none does if a rival or no robot touches it, or if it leaves the field.
 
-    None if the piece ends before that is known, or the referee stops the game while the ball is still in the field.
+    None if the piece ends before that is known, or the referee stops the game for another reason.
     """
     held: dict[str, int] = {}
     for tick in range(kicked + 1, kicked + round(_FLIGHT_S / piece.period_s)):
-        if tick not in piece.truth:
+        if _left(piece, tick - 1, tick):
+            return False
+        if tick not in piece.truth or (tick in piece.game and piece.game[tick].stopped):
             return None
-        if tick in piece.game and piece.game[tick].stopped:
-            return None if _is_in_field(piece, tick - 1) else False
         touching = piece.touched_by(tick, 0.0) - {passer}
         if any(piece.team(robot) != piece.team(passer) for robot in touching):
             return False

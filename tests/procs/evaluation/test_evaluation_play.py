@@ -82,13 +82,31 @@ def test_pass_whose_end_the_piece_does_not_show_does_not_count() -> None:
     assert conducted(passed("", ticks=40))["passes controlled by the receiver"].tolist() == []
 
 
-@pytest.mark.parametrize(("ball_m_s", "found"), [(1.0, []), (10.0, [False])])
-def test_pass_that_a_foul_interrupts_does_not_count(ball_m_s: float, found: list[bool]) -> None:
-    """A pass out of the field does."""
-    made = passed("", ball_m_s=ball_m_s)
+def test_pass_that_a_foul_interrupts_does_not_count() -> None:
+    made = passed("", ball_m_s=1.0)
     for tick in list(made.truth)[30:]:
         made.game[tick].stopped = True
-    assert conducted(made)["passes controlled by the receiver"].tolist() == found
+    assert conducted(made)["passes controlled by the receiver"].tolist() == []
+
+
+@pytest.mark.parametrize("kind", [match_event_t.OUT_SIDE, match_event_t.OUT_END, match_event_t.GOAL])
+@pytest.mark.parametrize("ahead_m", [0.0, 0.08, 0.16, 0.24])
+def test_pass_out_of_the_field_counts_wherever_a_tick_ends(kind: int, ahead_m: float) -> None:
+    """At 5 m/s the ball may be inside the field one tick, and out of it by 0.1 to 0.35 m in the next."""
+    made = passed("", ball_m_s=5.0)
+    for truth in made.truth.values():
+        truth.ball_x_m += ahead_m
+    out = min(tick for tick, truth in made.truth.items() if truth.ball_x_m > 11.11)
+    made.events[out] = [event(kind, "cyan1")]
+    made.game |= {tick: _stopped() for tick in made.truth if tick >= out}
+    assert conducted(made)["passes controlled by the receiver"].tolist() == [False]
+
+
+def test_pass_that_goes_out_in_the_tick_of_its_kick_counts() -> None:
+    made = passed("")
+    made.events = {FIRST + 1: [event(match_event_t.OUT_SIDE, "cyan1"), *made.events[FIRST + 1]]}
+    made.game |= {tick: _stopped() for tick in made.truth if tick > FIRST}
+    assert conducted(made)["passes controlled by the receiver"].tolist() == [False]
 
 
 def test_captures_that_bounce_and_a_free_ball_are_counted() -> None:
@@ -119,3 +137,9 @@ def test_matches_are_won_and_lost_by_goals(cyan: int, magenta: int, won: float, 
     made.game = dict.fromkeys(made.truth, game)
     found = possession(made)
     assert (found["won by cyan"].tolist(), found["lost by cyan"].tolist()) == ([won], [lost])
+
+
+def _stopped() -> game_state_t:
+    game = game_state_t()
+    game.state, game.stopped = game_state_t.THROW_IN, True
+    return game
