@@ -32,7 +32,7 @@ class Stretch:
         self.breached = False
         """A breach of the set piece was counted."""
         self.suffered: Foul | None = None
-        """Foul during a penalty that is one shot, which brings a penalty itself."""
+        """Foul of the defenders during a penalty, which is repeated unless its shot is a goal."""
         self._carrier = Carrier()
         self._book = RuleBook()
         self._advantage = Advantage()

@@ -31,8 +31,25 @@ class Whistle(Match):
         return not self.shootout and self.time_in_half_s >= halves.length_s(self.half, self.rules)
 
     @property
+    def _is_last_act(self) -> bool:
+        """Whether no play follows: the penalty at hand is one that decides the match, or the half ends with it."""
+        return bool(self.shootout) or self._time_is_over
+
+    @property
+    def _shooter(self) -> Team:
+        """Team of the penalty that is to be shot, or whose shot is under way; NONE without one."""
+        if self.state is State.PLAY and self._stretch.penalty_rolls:
+            return team_number(self._stretch.touches.taker)
+        return self.team if self.state is State.PENALTY else Team.NONE
+
+    @property
     def _set_piece_is_late(self) -> bool:
         return self.time_in_state_s >= self.rules.time_of_s(self.state)
+
+    @property
+    def _shot_is_over(self) -> bool:
+        """Whether a penalty that play would follow cannot be scored any more."""
+        return self._stretch.touches.intercepted or (self._set_piece_is_late and not self._stretch.released)
 
     def step(self, duration_s: float, sight: Sight) -> None:
         """Runs one tick of `duration_s`."""
@@ -62,8 +79,8 @@ class Whistle(Match):
 
     def _prolong_for_penalty(self) -> bool:
         """Prolongs the half for a penalty, also for one shot in time that is play by now; returns whether it does."""
-        if self.state is State.PLAY and self._stretch.penalty_rolls:
-            self._enter(State.PENALTY, team_number(self._stretch.touches.taker), stopped=False)
+        if self.state is State.PLAY and self._shooter:
+            self._enter(State.PENALTY, self._shooter, stopped=False)
         return self.state is State.PENALTY
 
     def _end_in_time(self, duration_s: float, sight: Sight) -> None:
@@ -120,7 +137,7 @@ class Whistle(Match):
 
     def _watch(self, duration_s: float, sight: Sight) -> None:
         scene = self._stretch.watch(duration_s, sight, self.ends, self.rules)
-        if self.shootout or self._time_is_over:
+        if self._is_last_act or self._stretch.suffered:
             self._watch_penalty(scene)
         elif any(self._ball_left(event, sight) for event in sight.events):
             return
@@ -174,22 +191,26 @@ class Whistle(Match):
         return rolled or (self.state is State.DROP_BALL and bool(scene.touches.robots))
 
     def _watch_penalty(self, scene: Scene) -> None:
-        """Watches a penalty that is one shot: one of those that decide a match, or the last act of a half.
+        """Watches a penalty that is one shot: one that decides a match, the last act of a half, or one after a foul.
 
-        A foul of the team that shoots makes it a miss; after one that brings a penalty itself, a miss is repeated.
+        A foul of the team that shoots makes it a miss. One that is the last act is repeated if a foul that brings a
+        penalty itself precedes a miss, any other penalty after any foul of the team that defends.
         """
         if self._repeat(scene):
             return
+        stretch, last = self._stretch, self._is_last_act
         reach_s = self.rules.shot_s if self.shootout else self.rules.penalty_s
-        scored = penalty_scored(scene, self._stretch, self.restart, self.time_in_state_s, reach_s)
+        scored = penalty_scored(scene, stretch, self.restart, self.time_in_state_s, reach_s)
         fouls = grave_fouls(scene)
         for foul in fouls:
             self._count_foul(foul)
-            if self._after_fouls([foul], scene.sight.ball) == self.restart:
-                self._stretch.suffered = foul
+            if not last or self._after_fouls([foul], scene.sight.ball) == self.restart:
+                stretch.suffered = foul
         if any(team_number(foul.robot) is self.team for foul in fouls):
-            scored, self._stretch.suffered = False, None
-        suffered = self._stretch.suffered
+            scored, stretch.suffered = False, None
+        elif scored is None and not last and self._shot_is_over:
+            scored = False
+        suffered = stretch.suffered
         if scored is None:
             return
         if suffered and not scored:
@@ -197,9 +218,19 @@ class Whistle(Match):
         elif self.shootout:
             self.end_penalty(scored)
         else:
-            if scored:
-                self.goal(self.team)
+            self._end_penalty_of_half(scored, fouls, scene.sight.ball)
+
+    def _end_penalty_of_half(self, scored: bool, fouls: list[Foul], ball: Point) -> None:
+        """Counts a penalty, and ends the half with it if its time is over; `fouls` are those that made it a miss."""
+        team = self.team
+        if scored:
+            self.goal(team)
+        if self._time_is_over:
             self.end_half()
+        elif scored:
+            self.interrupt(restarts.kick_off(team.other))
+        else:
+            self._stop_for(fouls, ball)
 
     def _repeat(self, scene: Scene) -> bool:
         """Has the set piece repeated after a breach, twice at most; returns whether it does.
@@ -229,11 +260,26 @@ class Whistle(Match):
             self._count_foul(foul)
         if not punished:
             return False
-        restart = self._after_fouls(punished, scene.sight.ball)
-        if only not in (None, restart.state):
+        if len(punished) == 1 and self._shooter is team_number(punished[0].robot).other:
+            self._suffer(punished[0])
+            return True
+        if only not in (None, self._after_fouls(punished, scene.sight.ball).state):
             return False
-        self.interrupt(restart, punished[0].reason, punished[0].robot if len(punished) == 1 else "")
+        self._stop_for(punished, scene.sight.ball)
         return True
+
+    def _suffer(self, foul: Foul) -> None:
+        """Repeats a penalty during which its defenders commit a foul: at once, or if the shot at hand is no goal."""
+        if self.state is State.PENALTY and not self._stretch.touches.robots:
+            self.interrupt(self.restart, foul.reason, foul.robot)
+            return
+        self._stretch.suffered = foul
+        if self.state is State.PLAY:
+            self._enter(State.PENALTY, self._shooter, stopped=False)
+
+    def _stop_for(self, fouls: list[Foul], ball: Point) -> None:
+        """Interrupts the game for the set piece that fouls bring."""
+        self.interrupt(self._after_fouls(fouls, ball), fouls[0].reason, fouls[0].robot if len(fouls) == 1 else "")
 
     def _after_fouls(self, fouls: list[Foul], ball: Point) -> Restart:
         """Returns the free kick or the penalty that a foul brings; fouls of both teams bring a dropped ball."""

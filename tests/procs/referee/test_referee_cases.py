@@ -72,6 +72,11 @@ CASES = {
         "set_pieces.test_penalty_waits_for_the_keeper_between_its_posts",
     ],
     "penalty: a goal without a second robot": ["match.test_penalty_goal_counts_without_a_second_robot"],
+    "penalty: repeated after a foul of the defenders": [
+        "mirrored.test_foul_of_the_defenders_at_a_penalty",
+        "match.test_fouled_penalty_is_repeated_once_its_shot_is_over",
+        "match.test_fouled_penalty_may_go_in_off_the_keeper",
+    ],
     "deciding penalty: one shot": [
         "cases.test_deciding_penalty_is_one_shot",
         "cases.test_rebound_of_a_deciding_penalty_is_a_miss",

@@ -116,6 +116,64 @@ def test_penalty_is_repeated_when_the_keeper_leaves_its_area() -> None:
     assert script.reasons[-1] == "keeper left its area before the penalty"
 
 
+def fouled_penalty(rolled_m: float) -> Script:
+    """Returns a penalty of which the ball was touched and has rolled so far when magenta2 commits a foul elsewhere."""
+    script = penalty()
+    script.whistle.rules = script.whistle.rules.model_copy(update={"fouls_per_card": 2})
+    script.touch("cyan2")
+    script.roll(7.4 + rolled_m, 0.0)
+    script.tick(Event(Kind.COLLISION, "magenta2", "cyan3", 3.0, 2.0, 3.5))
+    assert script.state == (State.PENALTY, CYAN, False), "the shot is judged first"
+    assert script.whistle.cards.warned == {"magenta2"}, "the foul counts"
+    return script
+
+
+@pytest.mark.parametrize(("rolled_m", "end"), [(0.2, "saved"), (1.0, "saved"), (1.0, "touched"), (0.2, "late")])
+def test_fouled_penalty_is_repeated_once_its_shot_is_over(rolled_m: float, end: str) -> None:
+    script = fouled_penalty(rolled_m)
+    if end == "saved":
+        script.roll(10.2, 0.0)
+        for _ in range(12):
+            script.touch("magenta1")
+    elif end == "touched":
+        script.touch("cyan2")
+    else:
+        script.wait(9.6)
+        assert not script.whistle.stopped
+        script.wait(0.4)
+    assert script.state == (State.PENALTY, CYAN, True)
+    assert script.reasons == ["collision", "collision"]
+
+
+def test_fouled_penalty_may_go_in_off_the_keeper() -> None:
+    script = fouled_penalty(1.0)
+    script.roll(10.2, 0.0)
+    script.touch("magenta1")
+    script.goal(11.2, "magenta1")
+    assert (script.state, script.score) == ((State.KICK_OFF, MAGENTA, True), (1, 0))
+    script.robots |= {"cyan2": Point(-4.0, 2.0), "cyan3": Point(-4.0, -2.0)}
+    script.started()
+    script.touch("magenta2")
+    script.roll(1.0, 0.0)
+    assert script.state == (State.PLAY, Team.NONE, False)
+
+
+def test_foul_of_the_shooters_ends_a_fouled_penalty() -> None:
+    script = fouled_penalty(1.0)
+    script.tick(Event(Kind.COLLISION, "cyan3", "magenta2", 3.0, 2.0, 3.5))
+    assert script.state == (State.FREE_KICK, MAGENTA, True)
+
+
+def test_fouled_penalty_prolongs_the_half() -> None:
+    script = fouled_penalty(1.0)
+    script.whistle.time_in_half_s = script.whistle.rules.half_s
+    script.tick(Event(Kind.OUT_END, "cyan2", "", 11.2, 2.0, 5.0))
+    assert script.started().state == (State.PENALTY, CYAN, False)
+    script.touch("cyan2")
+    script.goal(11.2, "cyan2")
+    assert (script.state[0], script.score) == (State.HALF_TIME, (1, 0))
+
+
 def test_third_foul_brings_yellow_then_the_robot_leaves() -> None:
     script = Script(double_yellow_s=5.0).playing()
     for _ in range(6):

@@ -352,3 +352,22 @@ def test_penalty_that_is_not_taken(view: View) -> None:
     assert match.decision.state is State.PENALTY
     match.wait(0.2)
     check(match, Decision(State.GOAL_KICK, "theirs", "penalty not taken in time"))
+
+
+@seen_by_all
+@pytest.mark.parametrize(("shot", "scores"), [(False, False), (True, False), (True, True)])
+def test_foul_of_the_defenders_at_a_penalty(view: View, shot: bool, scores: bool) -> None:
+    match = in_play(view)
+    match.give(restarts.penalty(view.ours, match.script.whistle.rules.field, match.script.whistle.ends))
+    match.script.started()
+    if shot:
+        match.touch("our2")
+        match.roll(9.0)
+    match.happen(Kind.COLLISION, "their2", 0.0, 3.8, other="our3", speed_m_s=3.5)
+    assert match.stopped is not shot
+    if shot:
+        match.happen(Kind.GOAL if scores else Kind.OUT_END, "our2", 11.2, 0.3 if scores else 2.0)
+    if scores:
+        check(match, Decision(State.KICK_OFF, "theirs", spot=(0.0, 0.0), score=(1, 0)))
+    else:
+        check(match, Decision(State.PENALTY, "ours", "collision", (7.4, 0.0)))
