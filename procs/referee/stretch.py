@@ -41,9 +41,10 @@ class Stretch:
 
     @property
     def penalty_rolls(self) -> bool:
-        """Whether the ball of a penalty was shot, and no robot has touched it since."""
+        """Whether the ball of a penalty was shot in its time, and no robot has touched it since."""
         touches = self.touches
-        return self.piece is State.PENALTY and self.released and not touches.again and len(touches.robots) == 1
+        shot = self.piece is State.PENALTY and self.released and not touches.overdue
+        return shot and not touches.again and len(touches.robots) == 1
 
     def watch(self, duration_s: float, sight: Sight, ends: Ends, rules: Rules) -> Scene:
         """Takes a tick of `duration_s`, and returns it as the rules see it."""

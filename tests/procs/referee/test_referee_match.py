@@ -62,6 +62,18 @@ def test_penalty_that_was_shot_in_time_prolongs_the_half(by: str, scores: bool) 
     assert (script.state[0], script.score) == (State.HALF_TIME, (int(scores), 0))
 
 
+def test_shot_of_a_lapsed_penalty_does_not_prolong_the_half() -> None:
+    script = penalty()
+    script.touch("cyan2")
+    script.wait(10.2)
+    assert script.state == (State.PLAY, Team.NONE, False)
+    script.touch("cyan2", Kind.KICK)
+    script.roll(8.2, 0.0)
+    script.whistle.time_in_half_s = script.whistle.rules.half_s
+    script.roll(9.0, 0.0)
+    assert script.state == (State.HALF_TIME, Team.NONE, True)
+
+
 @pytest.mark.parametrize("back", [True, False])
 def test_new_keeper_of_a_penalty_has_left_no_area(back: bool) -> None:
     """A robot becomes the goalkeeper when a lower number is sent off, or comes back to the bench."""
