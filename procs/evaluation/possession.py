@@ -48,13 +48,19 @@ def _shots(piece: Piece) -> list[match_event_t]:
 
 
 def _bounces(piece: Piece) -> list[bool]:
-    """Returns for each first touch of a free ball whether the ball was soon free again, without a kick."""
+    """Returns for each first touch of a free ball whether the ball was soon free again, without a kick.
+
+    One that a whistle or the end of the piece follows too soon is left out.
+    """
     soon, found = round(_BOUNCED_S / piece.period_s), []
-    played = _played(piece)
-    last = max(played, default=0)
+    played = dict.fromkeys(_played(piece))
     for tick in played:
         after = range(tick + 1, tick + 1 + soon)
-        if after.stop > last or not piece.touched_by(tick, 0.0) or piece.touched_by(tick - 1, _FREE_S):
+        if (
+            not all(each in played for each in after)
+            or not piece.touched_by(tick, 0.0)
+            or piece.touched_by(tick - 1, _FREE_S)
+        ):
             continue
         kinds = {event.kind for each in (tick, *after) for event in piece.events.get(each, ())}
         if match_event_t.KICK not in kinds:

@@ -119,6 +119,16 @@ def test_captures_that_bounce_and_a_free_ball_are_counted() -> None:
     assert found["ball free"].mean() == pytest.approx(23 / 60, abs=0.04)
 
 
+@pytest.mark.parametrize(("whistle_s", "found"), [(0.0, []), (0.55, []), (0.65, [True])])
+def test_capture_that_a_whistle_follows_is_left_out(whistle_s: float, found: list[bool]) -> None:
+    made = piece([robot("cyan1", 0.0, 0.0)], ticks=200)
+    made.game = dict.fromkeys(made.truth, playing())
+    made.events = {FIRST + 10: [event(match_event_t.TOUCH, "cyan1")]}
+    stopped = FIRST + 11 + round(whistle_s / 0.05)
+    made.game |= dict.fromkeys(range(stopped, stopped + 40), _stopped())
+    assert possession(made)["captures that bounce"].tolist() == found
+
+
 @pytest.mark.parametrize(("skill", "shots"), [("shoot", 1), ("lob", 1), ("pass", 0)])
 def test_shots_are_fast_kicks_of_the_skills_that_shoot(skill: str, shots: int) -> None:
     made = piece([robot("cyan1", 0.0, 0.0)])
