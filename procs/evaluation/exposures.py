@@ -6,7 +6,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from lcmtypes.soccer import ball_percept_t, pose_t
+from lcmtypes.soccer import ball_percept_t, ground_truth_t, pose_t
 from procs.evaluation.piece import Piece
 from procs.evaluation.poses import START_S
 from procs.model.frames import Floats, rotation
@@ -46,12 +46,17 @@ def frames_of(piece: Piece) -> Iterator[Frame]:
                 yield Frame(robot, tick, tick - age_us / US_PER_S / piece.period_s, percept)
 
 
+def truth_at(piece: Piece, exposed: float) -> ground_truth_t | None:
+    """Returns the world at a time in ticks; None if the ticks before and after are not of the piece."""
+    before, after, share = around(piece.truth, exposed)
+    return None if before is None or after is None else between(before, after, share, piece.period_s)
+
+
 def scene_at(piece: Piece, robot: str, exposed: float) -> Scene | None:
     """Returns the scene around a robot at a time in ticks; None if the ticks before and after are not of the piece."""
-    before, after, share = _around(piece.truth, exposed)
-    if before is None or after is None:
+    truth = truth_at(piece, exposed)
+    if truth is None:
         return None
-    truth = between(before, after, share, piece.period_s)
     places = {each.name: each for each in truth.robots}
     own = places.pop(robot, None)
     if own is None:
@@ -64,7 +69,7 @@ def scene_at(piece: Piece, robot: str, exposed: float) -> Scene | None:
 
 def pose_at(poses: Mapping[int, pose_t], exposed: float) -> Floats | None:
     """Returns the pose (3) that a robot believed at a time in ticks; None if it did not know its place."""
-    before, after, share = _around(poses, exposed)
+    before, after, share = around(poses, exposed)
     if before is None or after is None or not (before.localized and after.localized):
         return None
     return pose_between(_values(before), _values(after), share)
@@ -77,7 +82,7 @@ def pose_between(before: Floats, after: Floats, share: float) -> Floats:
     return np.asarray(before + share * way)
 
 
-def _around(values: Mapping[int, T], exposed: float) -> tuple[T | None, T | None, float]:
+def around(values: Mapping[int, T], exposed: float) -> tuple[T | None, T | None, float]:
     """Returns the values before and after a time in ticks, and the share of the way from one to the next."""
     first = math.floor(exposed + 1e-6)
     share = max(0.0, exposed - first)

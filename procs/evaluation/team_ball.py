@@ -9,6 +9,7 @@ import numpy as np
 
 from lcmtypes.soccer import ground_truth_t
 from procs.evaluation.beliefs import MOVING_M_S, NEAR_M, Samples, models_of, placed_ticks
+from procs.evaluation.exposures import around, truth_at
 from procs.evaluation.piece import Piece
 from procs.evaluation.poses import START_S
 from procs.model.frames import Floats
@@ -20,8 +21,8 @@ _STALE_S = 0.2  # older sightings of a robot are not averaged
 class _Sighting(NamedTuple):
     """A robot's own sighting of the ball."""
 
-    exposed: int
-    """Tick of the exposure."""
+    exposed: float
+    """Time of the exposure, in ticks."""
     place_m: Floats
     """(2), world frame, by the robot's own pose."""
     distance_m: float
@@ -29,6 +30,8 @@ class _Sighting(NamedTuple):
 
 _Sightings = dict[str, dict[int, _Sighting]]
 """Own sightings of each robot by the tick in which it tells them; no mate knows them sooner."""
+_Balls = dict[str, dict[int, Floats]]
+"""Balls (2) that each robot of a team knows, by tick."""
 
 
 def team_ball(piece: Piece) -> Samples:
@@ -65,7 +68,7 @@ def _single(piece: Piece, sightings: _Sightings) -> Samples:
     moving: list[float] = []
     for told in sightings.values():
         for each in {each.exposed: each for each in told.values()}.values():
-            truth = piece.truth.get(each.exposed)
+            truth = truth_at(piece, each.exposed)
             if truth is None or each.exposed * piece.period_s < START_S or each.distance_m > NEAR_M:
                 continue
             moves = math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s) >= MOVING_M_S
@@ -84,14 +87,15 @@ def _fusion(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
     exposed: list[tuple[float, float]] = []
     middle: list[tuple[float, float]] = []
     average: list[tuple[float, float]] = []
-    for (team, tick), error_m2 in _fused(piece, placed).items():
+    balls = _known_balls(piece, placed)
+    for (team, tick), error_m2 in _fused(piece, balls).items():
         of_team = [told for robot, told in sightings.items() if piece.team(robot) == team]
         recent = [each for told in of_team for each in _newest(told, tick, _STALE_S / piece.period_s)]
         truth = piece.truth[tick]
         if fresh := [told[tick] for told in of_team if tick in told]:
             best.append((error_m2, _error_m2(min(fresh, key=_distance_m), truth)))
-        if then := [each for told in of_team for each in told.values() if each.exposed == tick]:
-            exposed.append((error_m2, _error_m2(min(then, key=_distance_m), truth)))
+        if then := [each for told in of_team for each in told.values() if round(each.exposed) == tick]:
+            exposed += _at_exposure(piece, balls[team], min(then, key=_distance_m))
         if recent:
             middle.append((error_m2, float(np.median([_error_m2(each, truth) for each in recent]))))
             mean_m = np.mean([each.place_m for each in recent], axis=0)
@@ -104,14 +108,34 @@ def _fusion(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
     }
 
 
-def _fused(piece: Piece, placed: Set[int]) -> dict[tuple[str, int], float]:
+def _known_balls(piece: Piece, placed: Set[int]) -> dict[str, _Balls]:
+    """Returns the balls that the robots of each team know, without those that the crew was putting down."""
+    balls: dict[str, _Balls] = defaultdict(lambda: defaultdict(dict))
+    for robot, tick, model, _ in models_of(piece):
+        if model.ball.known and tick not in placed:
+            balls[piece.team(robot)][robot][tick] = np.array((model.ball.x_m, model.ball.y_m))
+    return balls
+
+
+def _fused(piece: Piece, balls: Mapping[str, _Balls]) -> dict[tuple[str, int], float]:
     """Returns the mean squared error of the ball that the robots of a team know, by team and tick."""
     errors_m2: dict[tuple[str, int], list[float]] = defaultdict(list)
-    for robot, tick, model, truth in models_of(piece):
-        if model.ball.known and tick not in placed:
-            known_m = np.array((model.ball.x_m, model.ball.y_m))
-            errors_m2[piece.team(robot), tick].append(_off_m2(known_m, truth))
+    for team, known in balls.items():
+        for places_m in known.values():
+            for tick, place_m in places_m.items():
+                errors_m2[team, tick].append(_off_m2(place_m, piece.truth[tick]))
     return {place: float(np.mean(each)) for place, each in errors_m2.items()}
+
+
+def _at_exposure(piece: Piece, known: _Balls, sighting: _Sighting) -> list[tuple[float, float]]:
+    """Returns the squared errors of the fused ball and of a sighting at its exposure, between two ticks."""
+    truth = truth_at(piece, sighting.exposed)
+    errors_m2 = []
+    for places_m in known.values():
+        before_m, after_m, share = around(places_m, sighting.exposed)
+        if truth and before_m is not None and after_m is not None:
+            errors_m2.append(_off_m2(before_m + share * (after_m - before_m), truth))
+    return [(float(np.mean(errors_m2)), _error_m2(sighting, truth))] if truth and errors_m2 else []
 
 
 def _sightings(piece: Piece, placed: Set[int]) -> _Sightings:
@@ -123,7 +147,7 @@ def _sightings(piece: Piece, placed: Set[int]) -> _Sightings:
             around = {math.floor(exposed + 1e-6), math.ceil(exposed - 1e-6)}
             if each.ball_visible and not around & placed:
                 place_m = np.array((each.ball_x_m, each.ball_y_m))
-                found[robot][tick] = _Sighting(round(exposed), place_m, each.ball_distance_m)
+                found[robot][tick] = _Sighting(exposed, place_m, each.ball_distance_m)
     return found
 
 

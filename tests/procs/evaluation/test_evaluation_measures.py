@@ -111,6 +111,20 @@ def test_single_sightings_count_at_their_exposure_within_4_m() -> None:
     assert rows["one sighting, ball resting"] == pytest.approx(0.1)
 
 
+def test_sightings_between_ticks_are_compared_with_the_truth() -> None:
+    made = piece([robot("cyan1", 0.0, 1.0)], vx_m_s=5.0)
+    models = {tick: model((truth.ball_x_m, 0.05)) for tick, truth in made.truth.items()}
+    told = made.by_robot["team_message"] = {"cyan1": {}}
+    made.by_robot["world_model"] = {"cyan1": models}
+    for tick, truth in made.truth.items():
+        each = told["cyan1"][tick + 1] = team_message_t()
+        each.ball_visible, each.ball_capture_us = True, tick * 50_000 + 20_000
+        each.ball_x_m, each.ball_y_m = truth.ball_x_m + 5.0 * 0.02, 0.1
+    rows = {row.name: row.value for row in rows_of([samples_of(made)])}
+    assert rows["one sighting, ball moving"] == pytest.approx(0.1)
+    assert rows["fused to best single at its exposure"] == pytest.approx(0.5)
+
+
 def test_sighting_while_the_crew_moves_the_ball_is_left_out() -> None:
     """A camera that exposes between two ticks shows a ball that was placed elsewhere at its new place."""
     made = piece([robot("cyan1", 0.0, 1.0)], vx_m_s=0.0)
