@@ -18,7 +18,7 @@ def widened(value: float, drawn: Interval, pieces: int, possible: Interval) -> I
     from scipy.special import stdtrit  # takes a moment, which each start of a match would pay, too
 
     factor = float(stdtrit(pieces - 1, 1.0 - _TAIL)) / _Z * math.sqrt(pieces / (pieces - 1))
-    low, high = (each if math.isinf(each - value) else value + factor * (each - value) for each in drawn)
+    low, high = (each if not math.isfinite(each - value) else value + factor * (each - value) for each in drawn)
     return max(possible[0], low), min(possible[1], high)
 
 

@@ -42,6 +42,11 @@ def share(samples: Floats) -> float:
     return mean(samples)
 
 
+def frequency(samples: Floats) -> float:
+    """Returns the mean number of events in a frame or a belief (n)."""
+    return mean(samples)
+
+
 def median(samples: Floats) -> float:
     """Returns the median of samples (n), infinite ones among them."""
     return float(np.quantile(samples, 0.5, method="inverted_cdf")) if len(samples) else np.nan
@@ -97,7 +102,7 @@ MEASURES = [
     Measure("ball found in a frame, up to 2.5 m", mean, "share", ">= 0.90"),
     Measure("ball found in a frame, 2.5 to 5 m", mean, "share", ">= 0.90"),
     Measure("ball found in a frame, 5 to 7.5 m", mean, "share", ""),
-    Measure("balls that do not exist, a frame", mean, "", "<= 0.0005"),
+    Measure("balls that do not exist, a frame", frequency, "", "<= 0.0005"),
     Measure("one sighting, ball resting", rms, "m", ""),
     Measure("one sighting, ball moving", rms, "m", ""),
     Measure("fused to best single", root_ratio, "", "<= 0.5"),
@@ -119,7 +124,7 @@ MEASURES = [
     Measure("opponents, position", rms, "m", "<= 0.08"),
     Measure("opponents, lag", ratio, "s", "0"),
     Measure("opponents known", mean, "share", ">= 0.80"),
-    Measure("opponents that do not exist", mean, "share", ""),
+    Measure("opponents that do not exist", frequency, "share", ""),
     Measure("pose known", mean, "share", ""),
     Measure("pose, position", rms, "m", "<= 0.10"),
     Measure("pose, position, 99 %", root_99, "m", "<= 0.30"),
@@ -182,10 +187,11 @@ class Row:
 def rows_of(pieces: Sequence[Samples], measures: Sequence[Measure] = MEASURES, seed: int = 1) -> list[Row]:
     """Computes the table; the interval comes from redrawing whole pieces, as samples of a piece depend on each other.
 
-    A single piece gives no interval: its limits are NaN. As few pieces redrawn vary less than pieces do, the interval
-    is widened. The interval of events that were never seen ends at the rate with which seeing none has a probability
-    of 5 %. Where redrawing gives no width, trials have Wilson's interval, as do those that all ended alike, and rates
-    of events, and differences of two, that of Poisson's distribution.
+    As few pieces redrawn vary less than pieces do, the interval is widened. The interval of events that were never seen
+    ends at the rate with which seeing none has a probability of 5 %. Where redrawing gives no width, trials have
+    Wilson's interval, as do those that all ended alike, and rates of events, and differences of two, that of Poisson's
+    distribution. A single piece gives an interval of events never seen and of trials that all ended alike; otherwise
+    its limits are NaN.
     """
     rng = np.random.default_rng(seed)
     draws = rng.integers(len(pieces), size=(_REDRAWS, len(pieces)))
@@ -205,12 +211,12 @@ def _interval(measure: Measure, value: float, pieces: Sequence[Samples], draws: 
     if measure.statistic is share and (even or value in (0.0, 1.0)):
         trials = sum(map(len, samples))
         return wilson(round(value * trials), trials)
-    if measure.statistic is rate and value == 0.0:
-        return never(_sums(samples)[1])
-    if measure.statistic is rate and even:
-        return poisson(*_sums(samples))
+    if measure.statistic in (rate, frequency) and (even or value == 0.0):
+        seen, time = _counted(samples)
+        low, high = poisson(seen, time) if seen else never(time)
+        return low, min(high, measure.possible[1])
     if measure.rates and even:
-        (events, time), (others, _) = (_sums([piece[each] for piece in pieces]) for each in measure.rates)
+        (events, time), (others, _) = (_counted([piece[each] for piece in pieces]) for each in measure.rates)
         return difference(events, others, time) if time else (np.nan, np.nan)
     return widened(value, drawn, counted, measure.possible) if counted > 1 else (np.nan, np.nan)
 
@@ -225,10 +231,14 @@ def _redrawn(measure: Measure, samples: Sequence[Floats], draws: NDArray[np.int6
     return low, high
 
 
-def _sums(samples: Sequence[Floats]) -> tuple[float, float]:
-    """Returns the sums of both columns."""
-    first, second = np.concatenate(samples).sum(axis=0).tolist()
-    return first, second
+def _counted(samples: Sequence[Floats]) -> tuple[float, float]:
+    """Returns how many events there were, and for how long they could happen: the sums of both columns.
+
+    Samples without a second column each count as long as the others.
+    """
+    every = np.concatenate(samples)
+    events, time = every.sum(axis=0).tolist() if every.ndim > 1 else (float(every.sum()), float(len(every)))
+    return events, time
 
 
 def as_text(rows: Sequence[Row]) -> str:

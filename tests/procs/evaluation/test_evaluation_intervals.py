@@ -53,7 +53,11 @@ def test_interval_stays_within_what_is_possible() -> None:
 
 @pytest.mark.parametrize(
     ("value", "drawn", "interval"),
-    [(1.0, (0.9, math.inf), (0.813, math.inf)), (math.inf, (0.9, math.inf), (0.9, math.inf))],
+    [
+        (1.0, (0.9, math.inf), (0.813, math.inf)),
+        (math.inf, (0.9, math.inf), (0.9, math.inf)),
+        (math.inf, (math.inf, math.inf), (math.inf, math.inf)),
+    ],
 )
 def test_infinite_limits_stay(value: float, drawn: tuple[float, float], interval: tuple[float, float]) -> None:
     assert widened(value, drawn, 4, (0.0, math.inf)) == pytest.approx(interval, abs=1e-3)
@@ -62,6 +66,30 @@ def test_infinite_limits_stay(value: float, drawn: tuple[float, float], interval
 def row_of(name: str, pieces: Sequence[Samples]) -> Row:
     (row,) = rows_of(pieces, [each for each in MEASURES if each.name == name])
     return row
+
+
+def test_pieces_that_are_all_infinite_have_an_infinite_interval() -> None:
+    row = row_of("ball lost, until known again", [{"ball lost, until known again": np.array([math.inf])}] * 4)
+    assert (row.value, row.low, row.high) == (math.inf, math.inf, math.inf)
+
+
+@pytest.mark.parametrize("name", ["balls that do not exist, a frame", "opponents that do not exist"])
+@pytest.mark.parametrize(("seen", "interval"), [(0.0, (0.0, 0.015)), (1.0, (0.00545, 0.0512))])
+def test_things_that_do_not_exist_have_an_interval(name: str, seen: float, interval: tuple[float, float]) -> None:
+    """None in 200 frames, or one in each piece of 50."""
+    row = row_of(name, [{name: np.array([seen] + [0.0] * 49)}] * 4)
+    assert row.value == seen / 50
+    assert (row.low, row.high) == pytest.approx(interval, abs=1e-4)
+    assert row_of(name, [{name: np.zeros(2)}]).high == (1.0 if name.startswith("opponents") else 1.5)
+
+
+def test_single_piece_has_intervals_of_never_and_always() -> None:
+    (found,) = rows_of([{"found": np.ones(10)}], [FOUND])
+    assert (found.low, found.high) == pytest.approx((0.722, 1.0), abs=1e-3)
+    (events,) = rows_of([{"events": np.array([(0.0, 5.0)])}], [EVENTS])
+    assert (events.low, events.high) == pytest.approx((0.0, 0.6))
+    for other in (rows_of([{"found": np.array([0.0, 1.0])}], [FOUND]), rows_of([{"lag": np.ones((1, 2))}], [LAG])):
+        assert math.isnan(other[0].low)
 
 
 def test_pieces_with_equal_rates_have_an_interval() -> None:
