@@ -51,7 +51,7 @@ def pose_samples(piece: Piece, interface: str = "pose", prefix: str = "") -> dic
     """Returns the samples of the poses in an interface of the robots; `prefix` goes before each name.
 
     A robot that was carried away cannot know that at once: until it knows that it is lost, or knows its place, its
-    errors do not count.
+    errors do not count, and neither does the jump to its right place.
     """
     errors: list[tuple[float, float]] = []  # squared, of position and heading
     standing: list[tuple[float, float]] = []
@@ -63,11 +63,13 @@ def pose_samples(piece: Piece, interface: str = "pose", prefix: str = "") -> dic
         beliefs = list(_beliefs(piece, interface, robot))
         found_s += _found_s(beliefs, piece.period_s)
         for belief in beliefs:
+            returns = unaware and belief.right
             unaware = (unaware or belief.carried) and belief.wrong
             if not unaware:
                 known.append(belief.localized)
                 wrongs += belief.wrong and not was_wrong
-                jumps += belief.jump_m > _JUMP_M and belief.localized and was_localized and not belief.carried
+                jumped = belief.jump_m > _JUMP_M and belief.localized and was_localized
+                jumps += jumped and not (belief.carried or returns)
                 if belief.localized:
                     errors.append((belief.error_m**2, belief.error_rad**2))
                     if belief.stands:

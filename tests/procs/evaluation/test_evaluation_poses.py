@@ -64,6 +64,17 @@ def test_wrong_place_found_after_a_search_counts_as_believed() -> None:
     assert found["kidnapped, time until found"].tolist() == [math.inf]
 
 
+@pytest.mark.parametrize(("found_m", "jumps", "found_s"), [(5.0, 0, 0.65), (4.4, 2, 5.5)])
+def test_return_to_the_right_place_is_no_jump(found_m: float, jumps: int, found_s: float) -> None:
+    """A robot that finds a place beside the right one jumps there, and to the right one."""
+    made = carried_piece()
+    at_m = [0.0] * 23 + [found_m] * 97 + [5.0] * 100
+    made.by_robot["pose"] = {"cyan1": {FIRST + i: believes(x_m) for i, x_m in enumerate(at_m)}}
+    found = pose_samples(made)
+    assert found["pose jumps"][0, 0] == jumps
+    assert found["kidnapped, time until found"].tolist() == pytest.approx([found_s])
+
+
 def test_pose_that_leaves_the_true_way_has_jumped() -> None:
     made = carried_piece()
     errors_m = [0.0] * 30 + [0.4] * 30 + [-0.4] * 160
