@@ -118,8 +118,9 @@ def parsed(text: str, where: str, further: Check = _nothing, last: Check = _noth
 
 
 def _mistakes(scenario: Scenario, config: SimulatorConfig) -> Iterator[str]:
-    yield from robot_mistakes([*scenario.robots, *scenario.seeing], scenario.dummies, scenario.places)
-    yield from team_mistakes([*scenario.robots, *scenario.seeing], scenario.settings)
+    thinking = {"robots": scenario.robots, "seeing": scenario.seeing}
+    yield from robot_mistakes({**thinking, "dummies": scenario.dummies}, scenario.places)
+    yield from team_mistakes(thinking, scenario.settings)
     yield from ball_mistakes(scenario.ball, config.field)
     yield from command_mistakes(scenario.commands, scenario.everyone, scenario.time_s, config)
     if not scenario.conditions:

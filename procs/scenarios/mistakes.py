@@ -27,27 +27,40 @@ _TURN_RAD = 2 * math.pi
 _LARGE_NUMBER = re.compile(r".*?0*[1-9]\d{9,}")
 
 
-def robot_mistakes(robots: Sequence[str], dummies: Sequence[str], places: Mapping[str, Any]) -> Iterator[str]:
-    """Yields what is wrong with the names of robots."""
-    everyone = Counter([*robots, *dummies])
+def robot_mistakes(named: Mapping[str, Sequence[str]], places: Mapping[str, Any]) -> Iterator[str]:
+    """Yields what is wrong with the names of robots; `named` holds those under each key of the file.
+
+    A name that occurs again is a mistake of its last place.
+    """
+    paths = {name: path for path, name in _paths(named)}
+    everyone = Counter(name for _, name in _paths(named))
     for name, times in everyone.items():
+        path = paths[name]
         if not _NAME.fullmatch(name):
-            yield f"robots: '{name}' is not a name; use letters, digits, '_' and '-', such as cyan1"
+            yield f"{path}: '{name}' is not a name; use letters, digits, '_' and '-', such as cyan1"
         if _LARGE_NUMBER.fullmatch(name):
-            yield f"robots: '{name}' has a number that is too large; use one of nine digits at most, such as cyan1"
+            yield f"{path}: '{name}' has a number that is too large; use one of nine digits at most, such as cyan1"
         if times > 1:
-            yield f"robots: '{name}' is named {times} times"
+            yield f"{path}: '{name}' is named {times} times"
     for name in places:
         if name not in everyone:
             yield f"places: no robot '{name}'; there are {', '.join(sorted(everyone)) or 'none'}"
 
 
-def team_mistakes(robots: Sequence[str], settings: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
-    """Yields the robots that play for no team: neither their names nor the settings `players` say for which."""
+def team_mistakes(named: Mapping[str, Sequence[str]], settings: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
+    """Yields the robots that play for no team: neither their names nor the settings `players` say for which.
+
+    `named` holds the names under each key of the file.
+    """
     stated = [players for values in settings.values() if isinstance(players := values.get("players"), Mapping)]
-    for name in robots:
+    for path, name in _paths(named):
         if not (_LARGE_NUMBER.fullmatch(name) or player_of(name, PLAYERS) or any(name in each for each in stated)):
-            yield f"robots: '{name}' plays for no team; names such as cyan1 and magenta2 tell it, or settings 'players'"
+            yield f"{path}: '{name}' plays for no team; names such as cyan1 and magenta2 tell it, or settings 'players'"
+
+
+def _paths(named: Mapping[str, Sequence[str]]) -> Iterator[tuple[str, str]]:
+    """Yields each robot after the path of its name."""
+    yield from ((f"{key}.{place}", name) for key, names in named.items() for place, name in enumerate(names))
 
 
 def ball_mistakes(fields: Mapping[str, Any], field: Field) -> Iterator[str]:

@@ -143,7 +143,7 @@ def test_robots_change_places() -> None:
         (
             "",
             "robots: [cyan2, cyan2]\nball: {x_m: 99}\nalways: [ball_speed < 9]",
-            "text:1: robots: 'cyan2' is named 2 times; "
+            "text:1: robots.1: 'cyan2' is named 2 times; "
             "text:2: ball: (99, 0) is outside the walls; x is at most 12 m, y 8 m",
         ),
         (

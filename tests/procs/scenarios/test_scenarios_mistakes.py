@@ -146,8 +146,19 @@ from tests.procs.scenarios.scenario_files import written
             ScenarioError,
             "commands.0: referee: no team 'red'; there are cyan, magenta",
         ),
-        ("robots: [cyan]\nat_end: [reasons]", ScenarioError, "robots: 'cyan' plays for no team; names such as cyan1"),
-        ("seeing: [cyan0]\nat_end: [reasons]", ScenarioError, "robots: 'cyan0' plays for no team"),
+        ("robots: [cyan]\nat_end: [reasons]", ScenarioError, "robots.0: 'cyan' plays for no team; names such as cyan1"),
+        ("seeing: [cyan0]\nat_end: [reasons]", ScenarioError, "mine.yaml:1: seeing.0: 'cyan0' plays for no team"),
+        (
+            "robots: [cyan2]\ndummies:\n  - 'mag enta'\n",
+            ScenarioError,
+            "mine.yaml:3: dummies.0: 'mag enta' is not a name; use letters",
+        ),
+        (
+            "seeing: [cyan2]\ndummies: [magenta2, magenta2]",
+            ScenarioError,
+            "mine.yaml:2: dummies.1: 'magenta2' is named 2 times",
+        ),
+        ("dummies: [a]\nrobots: [cyan2]\nseeing: [cyan2]", ScenarioError, "mine.yaml:3: seeing.0: 'cyan2' is named 2"),
         (f"robots: [cyan{9**20}]", ScenarioError, "has a number that is too large; use one of nine digits at most"),
         (f"dummies: [cyan{'9' * 5000}]", ScenarioError, "has a number that is too large"),
         (
