@@ -71,7 +71,7 @@ def _broken(path: Path, scenario: Scenario, seed: int) -> list[str]:
 
 def flaw_in(result: Any) -> str:
     """Returns why a result is not one of scenarios, or an empty text."""
-    lists = result.values() if isinstance(result, Mapping) else [None]
+    lists = result.values() if isinstance(result, Mapping) and result else [None]
     whole = all(isinstance(each, list) and all(isinstance(text, str) for text in each) for each in lists)
     return "" if whole else "it should hold a list of texts for each scenario"
 

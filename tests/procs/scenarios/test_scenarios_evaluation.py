@@ -45,7 +45,7 @@ def test_evaluation_names_a_mistake_that_the_run_shows(tmp_path: Path) -> None:
         evaluation.played_in(tmp_path, 1)
 
 
-@pytest.mark.parametrize("result", [[1], 3, {"mine": 1}, {"mine": "never"}, {"mine": [1]}, {"mine": None}])
+@pytest.mark.parametrize("result", [[1], 3, {}, {"mine": 1}, {"mine": "never"}, {"mine": [1]}, {"mine": None}])
 def test_result_that_is_none_of_scenarios_is_named(result: object) -> None:
     assert evaluation.flaw_in(result) == "it should hold a list of texts for each scenario"
     assert evaluation.flaw_in({"mine": [], "bad": ["never: x(ball) > 1"]}) == ""
