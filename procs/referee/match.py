@@ -98,7 +98,10 @@ class Match:
         return self.team if prepared else Team.NONE
 
     def stop(self, ball: Point) -> None:
-        """Stops the game until it is started by hand; from play it goes on with a dropped ball where the ball is."""
+        """Stops the game until it is started by hand; from play it goes on with a dropped ball.
+
+        The ball is dropped where it is, but as far from goals and lines as a free kick is taken.
+        """
         if not self.stopped:
             self._ball.remember(ball, self.rules.field)
         if self.state is State.PLAY:

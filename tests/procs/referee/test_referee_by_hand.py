@@ -1,5 +1,7 @@
 """A match that is led by commands: stops and starts, breaks, and commands that make no sense."""
 
+import math
+
 import pytest
 
 from procs.model.events import Kind
@@ -52,6 +54,23 @@ def test_set_piece_belongs_where_play_was_stopped(
     ask(script, "penalty", "cyan")
     ask(script, command, "" if command == "drop_ball" else "cyan")
     assert script.whistle.spot == pytest.approx(spot), "the decision is changed"
+
+
+@pytest.mark.parametrize(
+    ("ball", "dropped"), [((2.0, 5.0), (2.0, 5.0)), ((10.0, 3.0), (7.4, 3.0)), ((2.0, -6.9), (2.0, -6.5))]
+)
+def test_stopped_ball_is_dropped_away_from_lines_and_goals(
+    ball: tuple[float, float], dropped: tuple[float, float]
+) -> None:
+    script = led_by_hand()
+    script.roll(*ball)
+    ask(script, "stop")
+    assert script.state == (State.DROP_BALL, 0, True)
+    assert script.whistle.spot == pytest.approx(dropped)
+    ask(script, "goalkick", "magenta")
+    assert script.whistle.spot == pytest.approx((7.4, math.copysign(3.5, ball[1]))), (
+        "on the side where play was stopped"
+    )
 
 
 def test_throw_in_belongs_where_the_ball_went_out() -> None:
