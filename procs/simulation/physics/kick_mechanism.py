@@ -80,7 +80,7 @@ class Kicker:
                 self._charged_from_us = now_us + round(self._settings.recharge_s * 1e6)
                 self._handling_from_us = now_us + round(self._settings.release_s * 1e6)
                 push = self._fire(command.speed_m_s, command.elevation_rad)
-        if near is not None and self._dribble and now_us >= self._handling_from_us:
+        if push is None and near is not None and self._dribble and now_us >= self._handling_from_us:
             place = self.mouth.place_of(near[0], near[1])
             if place is not None:
                 push = Push(self.mouth.pull(place, near, duration_s), kicked=False)
