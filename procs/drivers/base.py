@@ -9,6 +9,7 @@ from fwk import Clock, Component, Config, Logger, Reads, Writes
 from lcmtypes.robot import motor_command_t, odometry_t, wheel_command_t, wheel_state_t
 from procs.drivers.odometry import Odometry
 from procs.drivers.ramp import Ramp, within_wheel_limit
+from procs.drivers.silence import Silence
 from procs.model.expected_errors import EXPECTED
 from procs.model.kinematics import (
     STANDSTILL,
@@ -59,7 +60,10 @@ class BaseConfig(Config):
 
 
 class Base(Component):
-    """Publishes odometry when sensors are read, and wheel commands when actuators act."""
+    """Publishes odometry when sensors are read, and wheel commands when actuators act.
+
+    A robot whose wheels are not measured any more stands still as far as its odometry knows.
+    """
 
     stage = ("sensor_acquire", "act_exec")
 
@@ -75,6 +79,9 @@ class Base(Component):
         self._odometry = Odometry()
         self._measured_us = 0
         self._wheels = WheelReader("wheel_state", "ignored", self.log.error)
+        self._silence = Silence(
+            "no speeds of the wheels for {silent_s:.2f} s: the robot counts as standing", self.log.warning
+        )
         self._late = False
         self._driven_us = -1  # time of the newest wheel command
         self._apply_settings(STANDSTILL)
@@ -86,6 +93,7 @@ class Base(Component):
         # Both stages take measurements: one that arrives between the stages must not be missing in the sum.
         for state in self.wheel_state.fresh:
             self._add(state)
+        self._silence.go_on(self.clock)
         if self.clock.stage == "act_exec":
             self._drive()
         else:
@@ -118,6 +126,7 @@ class Base(Component):
         if not all(abs(speed) <= _PLAUSIBLE * self.config.robot.wheel_limit_m_s for speed in wheels_m_s):
             self.log.warning(f"wheel speeds {', '.join(map(str, wheels_m_s))} m/s are impossible; ignored")
             return
+        self._silence.end(self.clock)
         passed_s = (state.header.time_us - self._measured_us) / US_PER_S
         self._measured_us = state.header.time_us
         self.odometry.value.capture_us = state.capture_us or state.header.time_us
@@ -141,6 +150,8 @@ class Base(Component):
 
     def _report(self) -> None:
         report, odometry = self.odometry.value, self._odometry
+        if self._silence.is_long:
+            odometry.velocity, report.velocity_covariance = STANDSTILL, [[0.0] * 3] * 3  # not known
         report.x_m, report.y_m, report.heading_rad = odometry.x_m, odometry.y_m, odometry.heading_rad
         report.vx_m_s, report.vy_m_s, report.omega_rad_s = odometry.velocity
         report.path_length_m = odometry.path_length_m

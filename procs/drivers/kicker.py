@@ -7,6 +7,7 @@ from pydantic import PositiveFloat
 
 from fwk import Clock, Component, Config, Logger, Reads, Request, Serves, Writes
 from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_drive_t, kicker_sensor_t, kicker_state_t
+from procs.drivers.silence import Silence
 from procs.model.geometry import BOUND, clamp, plausible
 from procs.model.kicker import STEEPEST_RAD
 from procs.model.robot import ROBOT, RobotModel
@@ -40,7 +41,8 @@ class Kicker(Component):
 
     A kick waits for ball and charge until it expires; a kick without a speed is rejected at once. A kick is accepted
     when the hardware is told to kick, and done when the hardware has kicked. Kicks that this driver did not ask for,
-    such as those before a restart, do not count, because their speed is unknown.
+    such as those before a restart, do not count, because their speed is unknown. Hardware that falls silent holds no
+    ball and is not charged.
     """
 
     stage = ("sensor_acquire", "act_exec")
@@ -59,12 +61,17 @@ class Kicker(Component):
         self._under_way: deque[_Asked] = deque(maxlen=_UNDER_WAY_MAX)  # not carried out yet, oldest first
         self._asked_us = 0  # when the hardware was told the newest kick
         self._late = False
+        self._silence = Silence(
+            "no reading of the kicker for {silent_s:.2f} s: no ball is held, and no kick possible", self.log.warning
+        )
 
     def loop(self) -> None:
         for sensor in self.kicker_sensor.fresh:
+            self._silence.end(self.clock)
             if any(asked.kick_id == sensor.kick_id for asked in self._under_way):
                 self._kicked(sensor.kick_id)
             self.kicker_state.value.kick_id = sensor.kick_id
+        self._silence.go_on(self.clock)
         if self.clock.stage == "act_exec":
             self._act()
         else:
@@ -88,9 +95,9 @@ class Kicker(Component):
                 request.done()
 
     def _report(self) -> None:
-        state, sensor = self.kicker_state.value, self.kicker_sensor.value
-        state.ball_held, state.charged, state.kicks = sensor.ball_held, sensor.charged, self._kicks
-        state.charge = sensor.charge
+        state, sensor, known = self.kicker_state.value, self.kicker_sensor.value, not self._silence.is_long
+        state.ball_held, state.charged, state.kicks = known and sensor.ball_held, known and sensor.charged, self._kicks
+        state.charge = sensor.charge if known else 0.0
         state.capture_us = sensor.capture_us or sensor.header.time_us
         self.kicker_state.write()
         if self.clock.since_s(self._asked_us) > self.config.command_timeout_s:
@@ -101,7 +108,8 @@ class Kicker(Component):
         self._refuse_impossible()
         sensor, drive = self.kicker_sensor.value, self.kicker_drive.value
         drive.kick_id, drive.kick_m_s, drive.elevation_rad = sensor.kick_id, 0.0, 0.0
-        if sensor.ball_held and sensor.charged and (request := self.kick.take()):
+        ready = sensor.ball_held and sensor.charged and not self._silence.is_long
+        if ready and (request := self.kick.take()):
             self._fail_open("a newer kick replaced it", spared=request)
             request.accept()
             newest_id = self._under_way[-1].kick_id if self._under_way else sensor.kick_id

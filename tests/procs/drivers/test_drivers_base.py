@@ -1,6 +1,7 @@
 """The driver of the wheels: commands in, wheel speeds out, odometry from measured wheel speeds."""
 
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -233,6 +234,40 @@ def test_after_a_long_silence_only_the_last_period_counts() -> None:
     base.iterate(100, stage="sensor_acquire")
     roll(base, Velocity(1.0, 0.0, 0.0), 1)
     assert base.port("odometry").sent[-1].x_m == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("period_s", [0.05, 0.02, 0.1])
+def test_odometry_of_silent_wheels_stands_after_half_a_second(period_s: float) -> None:
+    base = bench(period_s=period_s)
+    roll(base, Velocity(2.0, 0.0, 1.0), 5)
+    heard_us = base.time_us
+    for _ in range(100):
+        base.iterate(stage="sensor_acquire")
+        odometry = base.port("odometry").sent[-1]
+        stands = base.time_us - heard_us > 500_000
+        assert (odometry.vx_m_s, odometry.omega_rad_s) == ((0.0, 0.0) if stands else pytest.approx((2.0, 1.0)))
+        assert np.any(odometry.velocity_covariance) != stands
+    warnings = [line.text for line in base.logged]
+    assert len(warnings) == 1
+    assert re.fullmatch(r"no speeds of the wheels for 0\.[56]\d s: the robot counts as standing", warnings[0])
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    assert base.port("odometry").sent[-1].vx_m_s == pytest.approx(1.0)
+    base.iterate(100, stage="sensor_acquire")
+    assert len(base.logged) == 2, "a second silence is told, too"
+
+
+def test_one_late_measurement_in_slow_ticks_is_no_silence() -> None:
+    base = bench(period_s=0.8)
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    base.iterate(stage="sensor_acquire")
+    assert base.port("odometry").sent[-1].vx_m_s == pytest.approx(1.0)
+    assert base.logged == []
+
+
+def test_base_that_begins_before_its_wheels_warns_of_nothing() -> None:
+    base = bench()
+    base.iterate(100, stage="sensor_acquire")
+    assert base.logged == []
 
 
 def test_base_leaves_the_wheels_stopped() -> None:

@@ -1,6 +1,7 @@
 """The kicker's driver: when it fires, waits, and drops a command."""
 
 import math
+import re
 from typing import Any
 
 import pytest
@@ -176,6 +177,38 @@ def test_state_is_what_the_sensor_says(kicker: Bench) -> None:
     act(kicker, {"ball_held": True, "charged": False, "kick_id": 4})
     state = kicker.port("kicker_state").sent[-1]
     assert (state.ball_held, state.charged, state.kick_id) == (True, False, 4)
+
+
+@pytest.mark.parametrize("period_s", [0.05, 0.02, 0.1])
+def test_silent_kicker_holds_no_ball_after_half_a_second(period_s: float) -> None:
+    kicker = Bench(Kicker, period_s=period_s)
+    for _ in range(3):
+        act(kicker, {**READY, "charge": 1.0})
+    heard_us = kicker.time_us
+    for _ in range(100):
+        act(kicker)
+        state = kicker.port("kicker_state").sent[-1]
+        known = kicker.time_us - heard_us <= 500_000
+        assert (state.ball_held, state.charged, state.charge) == (known, known, float(known))
+    warnings = [line.text for line in kicker.logged]
+    assert len(warnings) == 1
+    assert re.fullmatch(r"no reading of the kicker for 0\.[56]\d s: no ball is held, and no kick possible", warnings[0])
+    act(kicker, READY)
+    assert kicker.port("kicker_state").sent[-1].ball_held
+
+
+def test_kick_waits_while_the_hardware_is_silent(kicker: Bench) -> None:
+    act(kicker, READY)
+    kicker.iterate(20)
+    kicker.kick.put(speed_m_s=8.0)
+    assert act(kicker).kick_m_s == 0.0
+    assert answers(kicker) == []
+    assert act(kicker, READY).kick_m_s == 8.0
+
+
+def test_kicker_that_begins_before_its_hardware_warns_not(kicker: Bench) -> None:
+    kicker.iterate(100)
+    assert kicker.logged == []
 
 
 def test_kicker_ends_with_handling_off_and_without_a_kick(kicker: Bench) -> None:
