@@ -54,6 +54,8 @@ class FieldCrew:
                 hold.reject(stranger)
                 continue
             (self.held.add if hold.value.held else self.held.discard)(hold.value.robot)
+            if hold.value.held:
+                self._world.kickers[hold.value.robot].drop_commands()
             hold.done()
         for ball in place_ball:
             mistake = ball_mistake(ball.value, self._field)

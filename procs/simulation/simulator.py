@@ -291,6 +291,7 @@ class Simulator(Component):
         empty = {name for name, battery in batteries.items() if battery.empty}
         for name in sorted(empty - self._empty):
             self.log.warning(f"the battery of {name} is empty: motors and kicker stop; world/reset puts a full one in")
+            self._world.kickers[name].drop_commands()
         self._empty = empty
         if now_us - self._battery_us < _BATTERY_US:
             return

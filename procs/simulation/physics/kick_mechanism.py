@@ -60,6 +60,11 @@ class Kicker:
         """Drops the commands that have not taken effect yet."""
         self._line.clear()
 
+    def begin_anew(self) -> None:
+        """Drops the commands that have not taken effect yet, and is charged."""
+        self._line.clear()
+        self._charged_from_us = self._handling_from_us = 0
+
     def charged(self, now_us: int) -> bool:
         """Returns whether a kick is possible."""
         return now_us >= self._charged_from_us

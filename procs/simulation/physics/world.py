@@ -122,15 +122,17 @@ class World:
         return found
 
     def return_to_starts(self) -> None:
-        """Sets all robots down at the places where they began, with full batteries."""
+        """Sets all robots down at the places where they began, with full batteries and charged kickers."""
         for name, pose in self._starts.items():
             self.robots[name].put(*pose)
+            self.kickers[name].begin_anew()
             self.batteries[name].refill()
         self._clear_ball(self._starts, self._middles())
 
     def place_robot(self, name: str, pose: Pose) -> bool:
         """Sets a robot down at rest, at the nearest place that is free; a ball that lies in its way is put beside it.
 
+        Commands on their way to its motors and its kicker are dropped.
         Returns False, and does nothing, if there is no room for it.
         """
         others = [Point(*robot.body.position) for robot in self.robots.values() if robot.name != name]
@@ -139,6 +141,7 @@ class World:
         if place is None or not self._clear_ball({name: Pose(*place, pose.heading_rad)}, [*others, place]):
             return False
         self.robots[name].put(*place, pose.heading_rad)
+        self.kickers[name].drop_commands()
         return True
 
     def place_ball(self, x_m: float, y_m: float) -> bool:
