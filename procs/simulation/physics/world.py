@@ -101,6 +101,7 @@ class World:
         self._bodies = Bodies(self._space)
         self._in_order = [(name, robot, self.kickers[name]) for name, robot in self.robots.items()]
         self._near_m2 = max([kicker.mouth.far_m for kicker in self.kickers.values()], default=0.0) ** 2
+        self._clear_ball(self._starts, self._middles())
 
     @property
     def ball_in_field(self) -> bool:

@@ -111,6 +111,26 @@ def test_command_without_room_is_refused(
     assert places_of(world.port("ground_truth").sent[-1]) == before
 
 
+@pytest.mark.parametrize("start", [(0.0, 0.0, 0.0), (0.1, 0.0, 1.0), (-0.2, 0.1, 0.0)])
+def test_match_begins_with_the_ball_outside_of_robots(start: tuple[float, float, float]) -> None:
+    world = Bench(Simulator, name="world/simulator", namespaces=("cyan1",), realism="none", starts={"cyan1": start})
+    for _ in range(3):
+        world.iterate()
+        truth = world.port("ground_truth").sent[-1]
+        assert math.dist((truth.ball_x_m, truth.ball_y_m), start[:2]) >= APART_M
+        assert (truth.ball_vx_m_s, truth.ball_vy_m_s) == (0.0, 0.0)
+    assert world.port("match_events").sent[-1].ball_in_field
+
+
+def test_ball_in_the_mouth_of_a_starting_robot_stays_there() -> None:
+    mouth_m = ROBOT.mouth_m + BALL.radius_m
+    starts = {"cyan1": (-mouth_m, 0.0, 0.0)}
+    world = Bench(Simulator, name="world/simulator", namespaces=("cyan1",), realism="none", starts=starts)
+    world.iterate()
+    assert world.port("ground_truth").sent[-1].ball_x_m == pytest.approx(0.0, abs=1e-3)
+    assert world.port("kicker_sensor", "cyan1").sent[-1].ball_held
+
+
 def test_full_ground_has_no_free_place() -> None:
     room = Room(FIELD)
     robots = [Point(0.5 * column, 0.5 * row) for column in range(-24, 25) for row in range(-16, 17)]
