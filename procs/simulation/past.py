@@ -6,7 +6,8 @@ from collections import deque
 from lcmtypes.soccer import ground_truth_t, true_robot_t
 
 _KEPT_US = 1_200_000  # longer than the longest latency
-_JUMP_M_S = 20.0  # what moves faster was placed, and is at either place, not between them
+_SUDDEN_M_S = 4.0  # within a tick a body is faster than before and after it by this at most; else it was placed
+_KICK_M_S = 20.0  # of a ball that is kicked and bounces within a tick
 
 
 class Past:
@@ -48,7 +49,9 @@ def between(earlier: ground_truth_t, later: ground_truth_t, share: float, span_s
     made = ground_truth_t()
     made.header = earlier.header
     way_m = math.dist((earlier.ball_x_m, earlier.ball_y_m), (later.ball_x_m, later.ball_y_m))
-    jumped = not way_m <= _JUMP_M_S * span_s
+    before_m_s = math.hypot(earlier.ball_vx_m_s, earlier.ball_vy_m_s)
+    after_m_s = math.hypot(later.ball_vx_m_s, later.ball_vy_m_s)
+    jumped = not way_m <= max(_KICK_M_S, _fastest_m_s(before_m_s, after_m_s)) * span_s
     for name in ("ball_x_m", "ball_y_m", "ball_z_m", "ball_vx_m_s", "ball_vy_m_s", "ball_vz_m_s"):
         then, now = getattr(earlier, name), getattr(later, name)
         setattr(made, name, now if jumped else then + share * (now - then))
@@ -57,10 +60,19 @@ def between(earlier: ground_truth_t, later: ground_truth_t, share: float, span_s
     return made
 
 
+def _fastest_m_s(before_m_s: float, after_m_s: float) -> float:
+    """Returns the highest mean speed between two messages with these speeds, of what was not placed.
+
+    What was placed is seen at either place, not between them.
+    """
+    return max(before_m_s, after_m_s) + _SUDDEN_M_S
+
+
 def _robot(earlier: true_robot_t, later: true_robot_t, share: float, span_s: float) -> true_robot_t:
     way_m = math.dist((earlier.x_m, earlier.y_m), (later.x_m, later.y_m))
     turn_rad = later.heading_rad - earlier.heading_rad
-    if not (way_m <= _JUMP_M_S * span_s and math.isfinite(turn_rad)):
+    before_m_s, after_m_s = math.hypot(earlier.vx_m_s, earlier.vy_m_s), math.hypot(later.vx_m_s, later.vy_m_s)
+    if not (way_m <= _fastest_m_s(before_m_s, after_m_s) * span_s and math.isfinite(turn_rad)):
         return later
     made = true_robot_t()
     made.name, made.team, made.number = later.name, later.team, later.number

@@ -38,6 +38,32 @@ def test_what_was_placed_is_not_seen_on_the_way() -> None:
     assert (world.robots[0].x_m, world.ball_x_m) == (3.0, -5.0)
 
 
+@pytest.mark.parametrize("span_us", [20_000, 100_000])
+@pytest.mark.parametrize(("vx_m_s", "vy_m_s"), [(15.0, 15.0), (-15.0, 15.0), (24.0, 0.0)])
+def test_fastest_ball_is_seen_on_its_way(vx_m_s: float, vy_m_s: float, span_us: int) -> None:
+    before, after = truth(50_000, 0.0, 0.0, 1.0), truth(50_000 + span_us, 0.0, 0.0, 1.0)
+    for made in (before, after):
+        made.ball_vx_m_s, made.ball_vy_m_s = vx_m_s, vy_m_s
+    after.ball_x_m, after.ball_y_m = 1.0 + vx_m_s * span_us / 1e6, vy_m_s * span_us / 1e6
+    world = past(before, after).at(50_000 + span_us // 4)
+    assert (world.ball_x_m, world.ball_y_m) == pytest.approx((1.0 + vx_m_s * span_us / 4e6, vy_m_s * span_us / 4e6))
+
+
+@pytest.mark.parametrize("way_m", [0.7, 1.8, -1.8])
+def test_robot_placed_near_by_is_not_seen_on_the_way(way_m: float) -> None:
+    """At 10 Hz; it drove at 2 m/s, and stands after it was placed."""
+    before, after = truth(100_000, 1.0, 0.0, 0.0), truth(200_000, 1.0 + way_m, 0.0, 0.0)
+    after.robots[0].vx_m_s = 0.0
+    assert past(before, after).at(150_000).robots[0].x_m == 1.0 + way_m
+
+
+@pytest.mark.parametrize(("before_m_s", "after_m_s"), [(0.0, 0.5), (3.0, -2.0), (3.0, 0.0), (0.0, 0.0)])
+def test_robot_that_is_bumped_is_seen_on_its_way(before_m_s: float, after_m_s: float) -> None:
+    before, after = truth(40_000, 1.0, 0.0, 0.0), truth(80_000, 1.1, 0.0, 0.0)
+    before.robots[0].vx_m_s, after.robots[0].vx_m_s = before_m_s, after_m_s
+    assert past(before, after).at(60_000).robots[0].x_m == pytest.approx(1.05)
+
+
 def test_before_the_first_message_the_world_is_as_in_it() -> None:
     assert past(truth(50_000, 1.0, 0.0, 0.0), truth(100_000, 1.1, 0.0, 0.0)).at(10_000).robots[0].x_m == 1.0
 
