@@ -13,14 +13,11 @@ _TEAMS = {CYAN: game_state_t.TEAM_CYAN, MAGENTA: game_state_t.TEAM_MAGENTA}
 
 
 def event_message(event: Event, players: Mapping[str, Player]) -> match_event_t:
-    """Returns an event for the referee; the team of a goal is the team that attacks that goal."""
-    player = players.get(event.robot)
+    """Returns an event for the referee. A goal has no team: the referee knows who attacks that goal in this half."""
+    player = None if event.kind is Kind.GOAL else players.get(event.robot)
     message = match_event_t()
     message.kind = int(event.kind)
-    scorer = CYAN if event.x_m > 0 else MAGENTA
-    message.team = _TEAMS.get(
-        scorer if event.kind is Kind.GOAL else player.team if player else "", game_state_t.TEAM_NONE
-    )
+    message.team = _TEAMS[player.team] if player else game_state_t.TEAM_NONE
     message.robot, message.other = event.robot, event.other
     message.x_m, message.y_m, message.speed_m_s = event.x_m, event.y_m, event.speed_m_s
     return message
