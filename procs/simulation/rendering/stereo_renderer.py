@@ -19,7 +19,7 @@ _PANEL_RAD, _PANEL_M = 0.15, 0.05  # size of the patches on the bodies of robots
 
 
 class StereoRenderer:
-    """Looks along the ray of every pixel, column by column: upright bodies cover whole columns."""
+    """Looks along the ray of every pixel, column by column, and paints upright bodies from far to near."""
 
     def __init__(self, rig: StereoRig, field: Field, bodies: Bodies) -> None:
         self._rig, self._bodies = rig, bodies
@@ -44,10 +44,9 @@ class StereoRenderer:
         frame = np.full((rig.height_px, rig.width_px), _SKY, np.uint8)
         if len(self._ground_m):
             frame[self._ground_rows] = self._ground(x_m, y_m, cosine, sine)
-        depth_m = np.full(rig.width_px, np.inf)
-        for other_x_m, other_y_m in robots_m:
-            dx, dy = other_x_m - x_m, other_y_m - y_m
-            self._paint(frame, depth_m, cosine * dx + sine * dy, cosine * dy - sine * dx)
+        if len(robots_m):
+            dx, dy = np.array(robots_m).T - ((x_m,), (y_m,))
+            self._paint(frame, cosine * dx + sine * dy, cosine * dy - sine * dx)
         return frame
 
     def _ground(self, x_m: float, y_m: float, cosine: float, sine: float) -> Grey:
@@ -61,20 +60,26 @@ class StereoRenderer:
         )
         return np.asarray(ground, np.uint8)
 
-    def _paint(self, frame: Grey, depth_m: Floats, ahead_m: float, left_m: float) -> None:
-        """Paints one robot where it is nearer than `depth_m` (columns), which it changes."""
+    def _paint(self, frame: Grey, ahead_m: Floats, left_m: Floats) -> None:
+        """Paints robots (robots) at these places of the camera's frame."""
         rig, radius_m = self._rig, self._bodies.robot_radius_m
         slope = -rig.columns  # of each column's ray: to the left for a metre ahead
         lengths = 1.0 + slope**2
-        half = (ahead_m + slope * left_m) / lengths
-        square = half**2 - (ahead_m**2 + left_m**2 - radius_m**2) / lengths
+        half = (ahead_m[:, None] + slope * left_m[:, None]) / lengths
+        square = half**2 - (ahead_m**2 + left_m**2 - radius_m**2)[:, None] / lengths
         near_m = half - np.sqrt(np.maximum(square, 0.0))
-        hit = np.flatnonzero((square > 0) & (near_m > _NEAREST_M) & (near_m < depth_m))
-        if not len(hit):
-            return
-        depth_m[hit] = near_m[hit]
-        height_m = rig.height_m - rig.rows[:, None] * near_m[hit]
-        around_rad = np.arctan2(slope[hit] * near_m[hit] - left_m, near_m[hit] - ahead_m)
+        near_m[(square <= 0) | (near_m <= _NEAREST_M)] = -np.inf  # not seen in that column
+        for number in np.argsort(-near_m, axis=0, kind="stable"):  # of a robot in each column, the farthest first
+            depth_m = np.take_along_axis(near_m, number[None], axis=0)[0]
+            hit = np.flatnonzero(depth_m > 0.0)
+            if len(hit):
+                robot, depth_m = number[hit], depth_m[hit]
+                around_rad = np.arctan2(slope[hit] * depth_m - left_m[robot], depth_m - ahead_m[robot])
+                self._paint_columns(frame, hit, depth_m, around_rad)
+
+    def _paint_columns(self, frame: Grey, hit: Indices, depth_m: Floats, around_rad: Floats) -> None:
+        """Paints the columns `hit`, which see a robot at these distances ahead and bearings from its middle."""
+        height_m = self._rig.height_m - self._rig.rows[:, None] * depth_m
         shade = _pattern(np.broadcast_to(around_rad / _PANEL_RAD, height_m.shape), height_m / _PANEL_M)
         body = (height_m >= 0.0) & (height_m <= self._bodies.robot_height_m)
         frame[:, hit] = np.where(body, shade, frame[:, hit])

@@ -2,6 +2,7 @@
 
 import math
 from functools import cache
+from itertools import permutations
 
 import numpy as np
 import pytest
@@ -11,8 +12,10 @@ from procs.simulation.rendering.carpet import lay_carpet
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.sensor_noise import SensorNoise
 from procs.simulation.rendering.shapes import Bodies
+from procs.simulation.rendering.stereo_renderer import StereoRenderer
 from procs.vision.colours import BLACK, CYAN, GREEN, MAGENTA, ORANGE, WHITE, Bgr, Picture
 from procs.vision.mirror import Mirror
+from procs.vision.stereo_rig import StereoRig
 
 MIRROR = Mirror()
 
@@ -77,6 +80,22 @@ def test_nearer_hides_the_farther() -> None:
     orange = np.array(ORANGE, np.uint8)
     assert not (hidden == orange).all(axis=2).any()
     assert (in_front == orange).all(axis=2).sum() > 100
+
+
+@pytest.mark.parametrize("height_m", [0.5, 0.9, 1.2])
+def test_stereo_picture_does_not_depend_on_the_order_of_robots(height_m: float) -> None:
+    pair = StereoRenderer(StereoRig(height_m=height_m), Field(), Bodies())
+    robots = [(2.0, 0.0), (2.8, 0.2), (3.6, -0.1)]
+    frames = {pair.render(Pose(0.0, 0.0, 0.0), list(order)).tobytes() for order in permutations(robots)}
+    assert len(frames) == 1
+
+
+@pytest.mark.parametrize(("height_m", "shows"), [(0.5, False), (1.2, True)])
+def test_stereo_pair_above_the_robots_sees_those_behind(height_m: float, shows: bool) -> None:
+    pair, own = StereoRenderer(StereoRig(height_m=height_m), Field(), Bodies()), Pose(0.0, 0.0, 0.0)
+    alone = pair.render(own, [(2.0, 0.0)])
+    both = pair.render(own, [(2.0, 0.0), (3.0, 0.0)])
+    assert (alone != both).any() == shows
 
 
 def test_tilted_mirror_sees_the_same_things_elsewhere() -> None:
