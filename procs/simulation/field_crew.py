@@ -19,6 +19,8 @@ class FieldCrew:
         """True while robots and ball stand still."""
         self.held: set[str] = set()
         """Robots whose motors and kicker stand."""
+        self.put_down: set[str] = set()
+        """Robots that were put down in this tick."""
         self._world = world
         self._field = field
 
@@ -31,9 +33,11 @@ class FieldCrew:
         reset: Serves[reset_world_t],
     ) -> None:
         """Takes all waiting commands."""
+        self.put_down.clear()
         for beginning in reset:
             self._world.return_to_starts()
             self.held.clear()
+            self.put_down.update(self._world.robots)
             if beginning.value.keep_ball or self._world.place_ball(0.0, 0.0):
                 beginning.done()
             else:
@@ -45,6 +49,7 @@ class FieldCrew:
                 continue
             wanted = robot.value
             if self._world.place_robot(wanted.robot, Pose(wanted.x_m, wanted.y_m, wanted.heading_rad)):
+                self.put_down.add(wanted.robot)
                 robot.done()
             else:
                 robot.reject(f"there is no room left for {wanted.robot} between the walls")

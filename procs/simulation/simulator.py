@@ -194,6 +194,8 @@ class Simulator(Component):
         self.time_source.next_us = now_us + self.clock.period_us
         self._place_ball()
         self._crew.carry_out(self.place_robot, self.hold_robot, self.place_ball, self.freeze, self.reset)
+        for name in self._crew.put_down:
+            self._imus[name].put_down()
         events: list[Event] = []
         if not self._crew.frozen:
             self._command_robots()

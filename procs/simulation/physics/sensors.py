@@ -34,7 +34,7 @@ class Inertial(NamedTuple):
     """-pi..pi, by the compass."""
     yaw_rate_rad_s: float
     ax_m_s2: float
-    """Mean acceleration since the last reading, robot frame."""
+    """Mean acceleration since the last reading, or since the robot was put down, robot frame."""
     ay_m_s2: float
     heading_sd_rad: float
     """Standard deviation from reading to reading, without the drift; 0: no error."""
@@ -53,6 +53,10 @@ class Imu:
         self._drift_rad = 0.0
         self._bias_rad_s = noise.gyro_bias_sd_rad_s * float(rng.standard_normal())
         self._before_m_s: tuple[float, float] | None = None
+
+    def put_down(self) -> None:
+        """Takes note that its robot was put down at rest, which it does not feel."""
+        self._before_m_s = (0.0, 0.0)
 
     def read(
         self, heading_rad: float, yaw_rate_rad_s: float, velocity_m_s: tuple[float, float], passed_s: float

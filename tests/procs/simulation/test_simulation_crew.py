@@ -222,3 +222,23 @@ def test_robot_that_is_set_down_stays_there(command: str, values: dict[str, obje
     world.iterate(10)
     robot = world.port("ground_truth").sent[-1].robots[0]
     assert math.dist((robot.x_m, robot.y_m), (before.x_m, before.y_m)) < 1e-6
+
+
+@pytest.mark.parametrize("frozen", [False, True])
+@pytest.mark.parametrize(("command", "values"), [("place_robot", {"robot": "cyan1", "x_m": -4.0}), ("reset", {})])
+def test_robot_does_not_feel_that_it_is_put_down(command: str, values: dict[str, object], frozen: bool) -> None:
+    world = bench()
+    for _ in range(30):
+        drive = wheel_command_t(wheel_m_s=[-2.0, 0.0, 2.0])
+        drive.header.time_us = world.time_us
+        world.port("wheel_command", "cyan1").put(drive)
+        world.iterate()
+    assert world.port("ground_truth").sent[-1].robots[0].vx_m_s > 2.0
+    world.port("freeze").put(frozen=frozen)
+    world.iterate(8 if frozen else 0)
+    world.port(command).put(**values)
+    world.iterate()
+    felt = world.port("imu", "cyan1").sent[-1]
+    robot = world.port("ground_truth").sent[-1].robots[0]
+    assert (felt.ax_m_s2, felt.ay_m_s2) == pytest.approx((robot.vx_m_s / 0.05, robot.vy_m_s / 0.05), abs=1e-9)
+    assert abs(felt.ax_m_s2) < 10.0
