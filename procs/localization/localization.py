@@ -25,6 +25,7 @@ from procs.vision.calibration import MirrorConfig
 
 _SHORT_S = 0.05  # up to this age of an exposure, the velocity of the last tick describes the motion well enough
 _AHEAD_S = 0.02  # clocks of cameras may be ahead by this much
+_COMPASS_S = 0.5  # a heading of the compass counts for so long, turned on by gyro or wheels
 _USUAL = MirrorConfig().mirror()  # the mirror for which the expected errors are stated
 _AWAY_M = 2.0  # distance at which mirrors are compared
 
@@ -121,6 +122,7 @@ class Localization(Component):
         self._updated_us = -1
         self._recent = RecentMotion()
         self._captured_us = 0  # exposure of the newest points
+        self._compass_rad, self._compass_us = 0.0, -1  # newest heading of the compass, and the tick in which it came
 
     def loop(self) -> None:
         if self._updated_us < 0 and self.clock.tick > 1 + self.clock.every:
@@ -128,11 +130,13 @@ class Localization(Component):
         knew = self._localizer.localized
         passed_s = self.clock.period_s if self._updated_us < 0 else self.clock.since_s(self._updated_us)
         updated_us, self._updated_us = self._updated_us, self.clock.now_us
-        motion = self._motion()
+        imu_is_sound = self._takes_compass()
+        motion = self._motion(imu_is_sound)
         if 0 <= updated_us < self._updated_us:
             self._recent.add(updated_us, self._updated_us, motion)
         seen = self._as_seen_now(self.line_points.value) if self._sees_anew() else _NOTHING
-        self._localizer.update(motion, self._compass_rad(), seen.x_m, seen.y_m, passed_s, seen.moved)
+        compass_rad = self._compass_now_rad() if len(seen.x_m) else None
+        self._localizer.update(motion, compass_rad, seen.x_m, seen.y_m, passed_s, seen.moved)
         if knew != self._localizer.localized:
             here_m = "({:.2f}, {:.2f})".format(*self._localizer.pose[:2])
             self.log.info(f"localized at {here_m} m" if not knew else "lost, searching the whole field")
@@ -163,11 +167,22 @@ class Localization(Component):
             errors=EXPECTED[config.realism].in_coarser_picture(coarse),
         )
 
-    def _compass_rad(self) -> float | None:
-        """Returns the heading that a new message of the compass states; None without one."""
+    def _takes_compass(self) -> bool:
+        """Remembers the heading of a new message of compass and gyro; returns whether there is one that can be."""
         imu = self.imu.value
         sound = self.imu.refreshed and plausible(imu.heading_rad) and abs(imu.yaw_rate_rad_s) < FASTEST_RAD_S
-        return imu.heading_rad if sound else None
+        if sound:
+            self._compass_rad, self._compass_us = imu.heading_rad, self.clock.now_us
+        return sound
+
+    def _compass_now_rad(self) -> float | None:
+        """Returns the newest heading of the compass, turned on as the robot has turned since; None if it is too old."""
+        if self._compass_us == self.clock.now_us:
+            return self._compass_rad
+        if self._compass_us < 0 or self.clock.since_s(self._compass_us) > _COMPASS_S:
+            return None
+        way = self._recent.since(self._compass_us)
+        return None if way is None else wrap_rad(self._compass_rad + way.turn_rad)
 
     def _sees_anew(self) -> bool:
         """Returns whether there are points of a new exposure; points of the same exposure would count twice."""
@@ -205,7 +220,7 @@ class Localization(Component):
             seen_m = product(seen_m - way_m, rotation(turn_rad))
         return SeenPoints(seen_m[:, 0], seen_m[:, 1], moved)
 
-    def _motion(self) -> Motion:
+    def _motion(self, imu_is_sound: bool) -> Motion:
         """Returns the motion since the last tick: the way by the wheels, the turn by the gyro, which does not slip.
 
         Without a gyro, the turn is that of the wheels, too.
@@ -222,7 +237,7 @@ class Localization(Component):
         longest_s = max(passed_s, self.clock.period_s)
         if np.hypot(*way_m) > FASTEST_M_S * longest_s or abs(turn_rad) > FASTEST_RAD_S * longest_s:
             way_m, turn_rad = np.zeros(2), 0.0  # the driver restarted: its frame has moved, not the robot
-        if self._compass_rad() is not None:
+        if imu_is_sound:
             rate_rad_s = self.imu.value.yaw_rate_rad_s
             if before is not now:
                 turn_rad = wrap_rad((rate_rad_s + self._yaw_rate_rad_s) / 2 * passed_s)

@@ -1,6 +1,7 @@
 """A robot that does not know its pose: search, kidnapping, compass."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -80,6 +81,38 @@ def test_compass_that_contradicts_the_pose_starts_a_search() -> None:
     robot.pose = np.array((2.0, 1.0, 0.5))
     bench = Bench(Localization, start_x_m=-2.0, start_y_m=-1.0, start_heading_rad=0.5 - math.pi)
     assert until_localized(bench, robot, 5.0) < math.inf, "it began as the mirror image of the true pose"
+
+
+def turning(bench: Bench, robot: FakeRobot, compass_every: int, ticks: int) -> bool:
+    """Turns a robot with frames in even ticks and headings in odd ones; returns whether it knows its place at last."""
+    for tick in range(ticks):
+        robot.drive(np.array((0.0, 0.0, 2.0)))
+        robot.show(bench)
+        if not compass_every or tick % compass_every != 1:
+            bench.port("imu").waiting.clear()
+        if tick % 2:
+            bench.port("line_points").waiting.clear()
+        bench.iterate()
+    return bool(bench.port("pose").sent[-1].localized and np.hypot(*robot.error(bench)[:2]) < 0.3)
+
+
+@pytest.mark.parametrize("begun_in_the_other_half", [False, True])
+@pytest.mark.parametrize("compass_every", [2, 8])
+def test_compass_may_come_in_other_ticks_than_frames(compass_every: int, begun_in_the_other_half: bool) -> None:
+    """A robot that turns needs the turn since a heading of 0.4 s ago."""
+    robot = FakeRobot(seed=15)
+    robot.pose = np.array((2.0, 1.0, 0.5))
+    wrong: dict[str, Any] = {"start_x_m": -2.0, "start_y_m": -1.0, "start_heading_rad": 0.5 - math.pi}
+    bench = Bench(Localization, **(wrong if begun_in_the_other_half else {}))
+    assert turning(bench, robot, compass_every, 100)
+
+
+def test_heading_of_long_ago_does_not_count() -> None:
+    bench, robot = Bench(Localization), FakeRobot(seed=15)
+    robot.pose = np.array((2.0, 1.0, 0.5))
+    bench.port("imu").put(heading_rad=0.5)
+    bench.iterate(11)
+    assert not turning(bench, robot, 0, 100)
 
 
 @pytest.mark.parametrize("parity", [0, 1])
