@@ -121,7 +121,7 @@ class Localization(Component):
         self._localizer = self._new_localizer(np.array(given) if given else None)
         self._updated_us = -1
         self._recent = RecentMotion()
-        self._captured_us = 0  # exposure of the newest points
+        self._captured_us = 0  # newest exposure of points
         self._compass_rad, self._compass_us = 0.0, -1  # newest heading of the compass, and the tick in which it came
 
     def loop(self) -> None:
@@ -185,11 +185,16 @@ class Localization(Component):
         return None if way is None else wrap_rad(self._compass_rad + way.turn_rad)
 
     def _sees_anew(self) -> bool:
-        """Returns whether there are points of a new exposure; points of the same exposure would count twice."""
+        """Returns whether there are points of a newer exposure; points of an exposure used already would count twice.
+
+        An exposure in the future is none. Remembered, it would shut out all exposures until then.
+        """
         if not self.line_points.refreshed:
             return False
         capture_us = self.line_points.value.capture_us
-        if capture_us and capture_us == self._captured_us:
+        if not capture_us:
+            return True
+        if capture_us <= self._captured_us or self.clock.since_s(capture_us) < -_AHEAD_S:
             return False
         self._captured_us = capture_us
         return True
@@ -197,14 +202,14 @@ class Localization(Component):
     def _as_seen_now(self, points: line_points_t) -> SeenPoints:
         """Returns the points in the robot frame of this tick: the robot has driven on since their exposure.
 
-        Returns no points if the way since the exposure is not known or the exposure is in the future, because wrong
-        places of lines would be worse than none.
+        Returns no points if the way since the exposure is not known, because wrong places of lines would be worse than
+        none.
         Zeros are no points: a driver has filled its arrays up with them.
         """
         seen_m = np.array((points.x_m, points.y_m)).T
         seen_m = seen_m[seen_m.any(axis=1)]
         age_s = self.clock.since_s(points.capture_us) if points.capture_us else 0.0
-        if age_s < -_AHEAD_S or (self._last is None and age_s > _SHORT_S):
+        if self._last is None and age_s > _SHORT_S:
             return _NOTHING
         if not len(seen_m) or age_s <= 0.0 or self._last is None:
             return SeenPoints(seen_m[:, 0], seen_m[:, 1])

@@ -114,6 +114,40 @@ def test_same_exposure_a_second_time_tells_nothing_new() -> None:
     assert deviations[0] < deviations[-1]
 
 
+def test_earlier_exposures_tell_nothing_new() -> None:
+    """Two exposures come in turns, so that none is that of the message before."""
+    deviations = []
+    for exposures in ((0, 1, 0, 1, 0, 1), (0, 1)):
+        bench, robot = localized(8)
+        seen: list[dict[str, Any]] = []
+        for ahead_s in (-0.06, -0.01):
+            x_m, y_m = robot.white_points()
+            seen.append(
+                {"x_m": x_m.tolist(), "y_m": y_m.tolist(), "capture_us": round(bench.time_us + ahead_s * US_PER_S)}
+            )
+        for tick in range(6):
+            robot.show(bench)
+            bench.port("line_points").waiting.clear()
+            if tick < len(exposures):
+                bench.port("line_points").put(**seen[exposures[tick]])
+            bench.iterate()
+        deviations.append(bench.port("pose").sent[-1].covariance)
+    assert deviations[0] == deviations[1]
+
+
+def test_exposure_in_the_future_shuts_no_later_ones_out() -> None:
+    bench, robot = localized(9)
+    robot.show(bench)
+    x_m, y_m = robot.white_points()
+    coming_us = round(bench.time_us + 10 * MEMORY_US)
+    bench.port("line_points").put(x_m=x_m.tolist(), y_m=y_m.tolist(), capture_us=coming_us)
+    bench.iterate()
+    robot.latency_s = 0.01
+    robot.pose = np.add(robot.pose, (0.15, 0.1, 0.1))
+    frames(bench, robot, 10)
+    assert np.hypot(*robot.error(bench)[:2]) < 0.05
+
+
 def test_points_still_to_come_are_not_believed() -> None:
     bench, robot = localized(9)
     for _ in range(20):
