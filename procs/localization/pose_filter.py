@@ -14,6 +14,7 @@ _STANDING_M = 0.002  # error of the place of a standing robot
 _TURN_ERROR = 0.03  # error as a share of the turn
 _STANDING_RAD = 0.002  # error of the heading of a standing robot
 _STRAIN_MEMORY_S = 0.17  # time constant of the mean innovation
+_STRAIN_SHARE = 0.5  # of the squared mean innovation; the rest is noise of the measurements
 _NO_ERROR, _UNIT, _AXES = np.zeros(3), np.eye(3), np.arange(3)
 
 
@@ -30,6 +31,7 @@ class PoseFilter:
         self.covariance: Floats = np.diag(np.square(deviations))
         """(3, 3) of x, y, heading."""
         self._strain_1_s = np.zeros(3)  # mean innovation for each second between frames
+        self._interval_s = _TICK_S  # between the last two frames
 
     def predict(self, ahead_m: float, left_m: float, turn_rad: float, duration_s: float = _TICK_S) -> None:
         """Moves the pose by the odometry of `duration_s`: a way in the robot's former frame, and a turn."""
@@ -38,7 +40,7 @@ class PoseFilter:
         self.pose = moved(self.pose, way_m, turn_rad)
         shift = np.array(((1.0, 0.0, -way_m[1]), (0.0, 1.0, way_m[0]), (0.0, 0.0, 1.0)))
         error_m, error_rad = motion_errors(math.hypot(ahead_m, left_m), turn_rad, duration_s)
-        strain = self._strain_1_s * duration_s
+        strain = self._strain_1_s * math.sqrt(_STRAIN_SHARE * duration_s * self._interval_s)
         noise = strain[:, None] * strain
         noise[_AXES, _AXES] += error_m**2, error_m**2, error_rad**2
         _, self.covariance = predict(_NO_ERROR, self.covariance, F=shift, Q=noise)
@@ -47,9 +49,10 @@ class PoseFilter:
         """Takes a measurement of the whole pose (3) with its covariance (3, 3), `interval_s` after the last one.
 
         Slipping wheels, or another robot that pushes, falsify the prediction in the same direction frame after frame.
-        The mean of the last innovations therefore counts as an error of the next prediction.
+        The mean of the last innovations therefore counts as an error of the next prediction. It lasts from frame to
+        frame, so what it adds until then depends on the time between frames, not on the length of a tick.
         """
-        interval_s = max(interval_s, 1e-3)
+        self._interval_s = interval_s = max(interval_s, 1e-3)
         innovation = pose - self.pose
         innovation[2] = wrap_rad(float(innovation[2]))
         share = -math.expm1(-interval_s / _STRAIN_MEMORY_S)

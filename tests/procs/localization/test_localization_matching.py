@@ -80,3 +80,18 @@ def test_filter_does_not_depend_on_the_length_of_a_tick() -> None:
             pose_filter.predict(2.0 / ticks, 0.0, 0.5 / ticks, 1.0 / ticks)
         deviations.append(np.sqrt(np.diag(pose_filter.covariance)))
     assert deviations[0] == pytest.approx(deviations[1], rel=0.1)
+
+
+def test_push_counts_the_same_with_any_length_of_a_tick() -> None:
+    deviations = []
+    for ticks in (1, 2, 8):
+        pose_filter = PoseFilter(np.zeros(3), (0.01, 0.01, 0.01))
+        for frame in range(1, 11):
+            for _ in range(ticks):
+                pose_filter.predict(0.0, 0.0, 0.0, 0.08 / ticks)
+            deviations.append(np.sqrt(np.diag(pose_filter.covariance)))
+            pose_filter.correct(np.array((0.04 * frame, 0.0, 0.0)), np.diag((4e-4, 4e-4, 1e-4)), 0.08)
+    one, two, eight = np.array(deviations).reshape(3, 10, 3)
+    assert two == pytest.approx(one)
+    assert eight == pytest.approx(one)
+    assert one[-1, 0] > 1.5 * one[-1, 1], "pushed along x"
