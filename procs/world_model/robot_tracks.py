@@ -96,7 +96,7 @@ class RobotTracks:
             positions_m: (m, 2), world frame.
             covariances_m2: (m, 2, 2).
             age_s: time since the exposure.
-            next_s: time within which the next frame comes; 0: not known.
+            next_s: time after which the next frame of this robot has come; 0: not known.
         """
         if not len(positions_m):
             return

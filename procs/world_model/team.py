@@ -9,12 +9,14 @@ import numpy as np
 from lcmtypes.soccer import pass_agreement_t
 from procs.model.frames import Floats
 from procs.model.geometry import wrap_rad
+from procs.world_model.frame_pace import FramePace
 
 _LEAST_M = 0.005  # deviation of a position that is added to the stated one
 _ACCELERATION_M_S2 = 3.0  # deviation of a mate's acceleration since its message
 _DRIFT_M_S = 0.5  # highest speed at which this acceleration moves a mate from the extrapolated place
 _TURNING_S = 0.25  # messages further apart do not determine the turning speed
 _EXTRAPOLATED_S = 0.5  # longest extrapolation of a velocity
+_RADIO_S = 0.06  # a message may take this much longer than the one before
 
 PlaceRow = tuple[float, float, float, float, float, float, float, float]
 """Position x, y (m), velocity vx, vy (m/s), and covariance xx, xy, yx, yy (m²) of the position."""
@@ -99,6 +101,7 @@ class Team:
 
     def __init__(self) -> None:
         self._mates: dict[str, Mate] = {}
+        self._frames: dict[str, tuple[int, FramePace]] = {}  # newest exposure that each mate told, and their pace
 
     def note(self, mate: Mate) -> Mate | None:
         """Takes a mate's message; sets and returns the mate with its turning speed.
@@ -115,7 +118,23 @@ class Team:
         self._mates[mate.name] = mate
         return mate
 
+    def next_s(self, mate: str, exposed_us: int, period_s: float) -> float:
+        """Returns the time after a mate's frame within which its next one arrives, unless a message is lost.
+
+        Args:
+            mate: name of the mate.
+            exposed_us: exposure of the frame that its newest message told.
+            period_s: time from one message to the next.
+        """
+        told_us, pace = self._frames.get(mate) or (0, FramePace())
+        if exposed_us != told_us:
+            pace.note(exposed_us)
+            self._frames[mate] = exposed_us, pace
+        return max(pace.next_s, period_s) + _RADIO_S
+
     def localized(self, now_s: float, timeout_s: float) -> list[Mate]:
         """Returns the mates, by name, that know their place and sent a message within the time-out."""
         self._mates = {name: mate for name, mate in self._mates.items() if now_s - mate.told_s <= timeout_s}
+        if len(self._frames) > len(self._mates):
+            self._frames = {name: told for name, told in self._frames.items() if name in self._mates}
         return [mate for _, mate in sorted(self._mates.items()) if mate.localized]

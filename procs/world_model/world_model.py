@@ -196,12 +196,14 @@ class WorldModel(Component):
             self.team_message.value.obstacles_capture_us = percepts.capture_us or self.clock.now_us
             seen = seen.widened(config.sight_correlation, config.pose_correlation)
             self._opponents.see(seen.positions_m, seen.covariances_m2, age_s, next_s)
-        for message, _ in told:
-            age_s = config.age_s(message.obstacles_capture_us or message.header.time_us, self.clock.now_us)
+        for message, mate in told:
+            exposed_us = message.obstacles_capture_us or message.header.time_us
+            age_s = config.age_s(exposed_us, self.clock.now_us)
             if counts(age_s):
+                next_s = self._team.next_s(mate.name, exposed_us, config.message_period_s)
                 seen = obstacles_of(message).widened(config.team_correlation, 1.0)
                 seen = strangers(seen, team, now_s - age_s, rules)
-                self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
+                self._opponents.see(seen.positions_m, seen.covariances_m2, age_s, next_s)
 
     def _message_due(self) -> bool:
         """Returns whether to send a message now: once a period, preferably in a tick with a new frame of the camera.
