@@ -44,9 +44,10 @@ class Watching:
         seen = [obstacle(*place) for place in places_m]
         self.bench.port("obstacle_percepts").put(capture_us=self.now_us - round(age_s * US_PER_S), obstacles=seen)
 
-    def see_ball(self, x_m: float, y_m: float, z_m: float = 0.0) -> None:
+    def see_ball(self, x_m: float, y_m: float, z_m: float = 0.0, age_s: float = 0.035) -> None:
+        capture_us = max(1, self.now_us - round(age_s * US_PER_S))
         self.bench.port("ball_percept").put(
-            capture_us=self.now_us - 35_000, visible=True, x_m=x_m, y_m=y_m, z_m=z_m, covariance_m2=SPREAD_M2
+            capture_us=capture_us, visible=True, x_m=x_m, y_m=y_m, z_m=z_m, covariance_m2=SPREAD_M2
         )
 
     def hear_of_held_ball(self, x_m: float, y_m: float) -> None:
@@ -117,16 +118,33 @@ def test_exposures_still_to_come_make_no_opponent_last(ahead_us: int) -> None:
     assert robot.world.opponents == []
 
 
-def test_a_mates_dirty_barrier_does_not_move_the_seen_ball() -> None:
-    robot = Watching()
-    for tick in range(60):
+@pytest.mark.parametrize(
+    ("period_s", "every", "latency_s"),
+    [(0.05, 2, 0.035), (0.04, 3, 0.15), (0.04, 5, 0.035), (0.04, 5, 0.15), (0.04, 7, 0.035), (0.1, 3, 0.035)],
+)
+def test_a_mates_dirty_barrier_does_not_move_the_seen_ball(period_s: float, every: int, latency_s: float) -> None:
+    robot = Watching(period_s)
+    for tick in range(round(3.0 / period_s)):
+        if tick % every == 0:
+            robot.see_ball(2.0, 0.0, age_s=latency_s)
         if tick % 2 == 0:
-            robot.see_ball(2.0, 0.0)
-            robot.hear_of_held_ball(-5.0, 3.0)
+            robot.hear_of_held_ball(-9.0, 5.0)
         robot.tick()
-        if tick >= 5:
+        if tick >= 3 * every:
             assert math.dist((robot.world.ball.x_m, robot.world.ball.y_m), (2.0, 0.0)) < 0.2
     assert robot.world.ball_holder == ""
+
+
+def test_an_old_sight_contradicts_no_barrier() -> None:
+    """The camera has shown the ball elsewhere, but is silent for longer than half a second."""
+    robot = Watching()
+    for tick in range(40):
+        if tick < 20 and tick % 4 == 0:
+            robot.see_ball(2.0, 0.0)
+        if tick >= 30:
+            robot.hear_of_held_ball(-7.0, 4.0)
+        robot.tick()
+    assert robot.world.ball_holder == "cyan2"
 
 
 def test_a_mate_holds_a_ball_that_is_seen_in_its_mouth() -> None:
