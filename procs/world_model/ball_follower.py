@@ -89,7 +89,8 @@ class BallFollower:
             tracker.kick(kick.velocity_m_s, kick.age_s - passed_s, kick.mouth, kick.lift_m_s, kick.time_sd_s)
         near = Robots.near(tracker.track, robots, self._mouth_m, self._config.robot.height_m) if tracker.known else None
         wall = float(tracker.known and self._walls.near(tracker.track, passed_s))
-        tracker.advance(passed_s, self._config.ball_timeout_s, contact=wall, robots=near, walls=self._walls)
+        timeout_s, next_s = self._config.ball_timeout_s, self._own_sights.next_s
+        tracker.advance(passed_s, timeout_s, contact=wall, robots=near, walls=self._walls, next_s=next_s)
         if news.game:
             self._take_placed_ball(news.game)
         if news.holds and view.localized and not kicked:

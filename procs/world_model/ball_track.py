@@ -38,7 +38,6 @@ from procs.world_model.walls import Walls
 
 FASTEST_M_S = 13.0
 """Speed that no kick exceeds."""
-_SECOND_SIGHT_US = 300_000  # older doubts are forgotten
 _LOST_US = 250_000  # a ball that no robot has seen for longer may have met something
 _USUAL_M_S = 11.0  # speed of a ball that was kicked hard
 _LATE_S = 0.03  # time by which a track lags behind a ball that was kicked
@@ -115,6 +114,8 @@ class Step:
     """Robots that may touch the ball."""
     timeout_us: int = 2 * US_PER_S
     """The ball is forgotten after this time without a sighting."""
+    doubt_us: int = 300_000
+    """A sighting that does not fit is forgotten after this time."""
     walls: Walls | None = None
     """Walls, nets and bars that limit the way of the ball."""
 
@@ -149,7 +150,7 @@ class BallTrack:
         """Returns the track at a later time; this one stays as it is."""
         if self.filter is None or self.is_forgotten(time_us, step):
             return BallTrack(time_us, self.ball, None, self.seen_us, self.seen_m, carpet=self._carpet())
-        doubts = self.doubts and tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= _SECOND_SIGHT_US)
+        doubts = self.doubts and tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= step.doubt_us)
         ball, confirmed = self.filter.copy(), self.confirmed.copy()
         made = BallTrack(time_us, self.ball, ball, self.seen_us, self.seen_m, confirmed, doubts, flight=self.flight)
         made._advance((time_us - self.time_us) / US_PER_S, step)

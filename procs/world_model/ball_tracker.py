@@ -22,6 +22,7 @@ from procs.world_model.walls import Walls
 
 _KEPT_US = 400_000  # older inputs are not used
 _LONGEST_STEP_US = 100_000  # longest step of the filter
+_DOUBT_S = 0.3  # a sighting that does not fit is kept for so long, or until the next frame
 _OBSERVER_US = 500_000  # a robot observes the ball for so long after a sighting
 _PUT_DOWN, _BY_OWN_CAMERA, _BY_MATE, _HELD, _KICKED = range(5)  # order of the inputs of one moment
 
@@ -93,6 +94,7 @@ class BallTracker:
         contact: float = 0.0,
         robots: Robots | None = None,
         walls: Walls | None = None,
+        next_s: float = 0.0,
     ) -> None:
         """Moves the track on by `duration_s`; forgets a ball without a sighting for `timeout_s`.
 
@@ -102,13 +104,14 @@ class BallTracker:
             contact: probability that a post or a wall reaches the ball.
             robots: those that may touch the ball.
             walls: limits of the ball's way.
+            next_s: time from a frame of the own camera within which the next one comes; 0: not known.
         """
         self._now_us += round(duration_s * US_PER_S)
         self._current = None
         oldest_us = self._now_us - _KEPT_US
         self._steps = [step for step in self._steps if step.end_us >= oldest_us]
-        timeout_us = round(timeout_s * US_PER_S)
-        self._steps.append(Step(self._now_us, self.ball.rolling_m_s2, contact, robots, timeout_us, walls))
+        timeout_us, doubt_us = round(timeout_s * US_PER_S), round(max(_DOUBT_S, next_s) * US_PER_S)
+        self._steps.append(Step(self._now_us, self.ball.rolling_m_s2, contact, robots, timeout_us, doubt_us, walls))
         self._settle()
         while len(self._moments) > 1 and self._moments[1].track.time_us <= oldest_us:
             del self._moments[0]

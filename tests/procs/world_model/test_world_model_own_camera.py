@@ -147,6 +147,17 @@ def test_an_old_sight_contradicts_no_barrier() -> None:
     assert robot.world.ball_holder == "cyan2"
 
 
+@pytest.mark.parametrize(("period_s", "every"), [(0.04, 2), (0.04, 8), (0.04, 10), (0.1, 5)])
+def test_two_frames_of_a_slow_camera_show_that_the_ball_moved(period_s: float, every: int) -> None:
+    """Nothing can have touched the ball, which lies 2 m further away from the 20th frame on."""
+    robot = Watching(period_s)
+    for tick in range(22 * every):
+        if tick % every == 0:
+            robot.see_ball(2.0 if tick < 20 * every else 4.0, 0.0)
+        robot.tick()
+    assert robot.world.ball.x_m == pytest.approx(4.0, abs=0.1)
+
+
 def test_a_mate_holds_a_ball_that_is_seen_in_its_mouth() -> None:
     robot = Watching()
     for tick in range(40):
