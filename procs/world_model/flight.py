@@ -16,6 +16,7 @@ _BOUNCE_SHARE = 0.1  # relative deviation of the lift after a bounce
 _NOISE_M2_S3 = 0.05  # spectral density of the vertical acceleration besides gravity
 _FITS = 4.0  # number of deviations within which a height fits
 _LEAST_LIFT_M_S = 0.3  # a kick with less lift rolls
+_LEAST_REBOUND_M_S = 0.01  # the ball stays on the ground with less, whatever its settings say
 
 
 @dataclass(frozen=True)
@@ -51,17 +52,19 @@ class Flight:
 
         The ball bounces until its lift is small.
         """
-        lands_m_s = math.sqrt(self.lift_m_s**2 + 2 * _GRAVITY_M_S2 * max(0.0, self.height_m))
-        lands_s = (self.lift_m_s + lands_m_s) / _GRAVITY_M_S2
-        if lands_s > duration_s:
-            return self._in_the_air(duration_s), 0.0
-        rebound_m_s = ball.bounce * lands_m_s
-        if rebound_m_s <= ball.least_rebound_m_s:
-            return None, duration_s - lands_s
-        before, share = self._in_the_air(lands_s), ball.bounce**2
-        lift_m2_s2 = share * before.lift_m2_s2 + (_BOUNCE_SHARE * rebound_m_s) ** 2
-        after = Flight(0.0, rebound_m_s, share * before.height_m2, share * before.both_m2_s, lift_m2_s2)
-        return after.moved(duration_s - lands_s, ball)
+        flight, least_m_s = self, max(ball.least_rebound_m_s, _LEAST_REBOUND_M_S)
+        while True:
+            lands_m_s = math.sqrt(flight.lift_m_s**2 + 2 * _GRAVITY_M_S2 * max(0.0, flight.height_m))
+            lands_s = (flight.lift_m_s + lands_m_s) / _GRAVITY_M_S2
+            if lands_s > duration_s:
+                return flight._in_the_air(duration_s), 0.0
+            duration_s -= lands_s
+            rebound_m_s = ball.bounce * lands_m_s
+            if rebound_m_s <= least_m_s:
+                return None, duration_s
+            before, share = flight._in_the_air(lands_s), ball.bounce**2
+            lift_m2_s2 = share * before.lift_m2_s2 + (_BOUNCE_SHARE * rebound_m_s) ** 2
+            flight = Flight(0.0, rebound_m_s, share * before.height_m2, share * before.both_m2_s, lift_m2_s2)
 
     def seen(self, height_m: float) -> "Flight | None":
         """Returns the flight after a sighting at a height (0: the ball seems to lie); None if that does not fit."""

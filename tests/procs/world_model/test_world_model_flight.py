@@ -7,7 +7,7 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from procs.model.ball import BALL
+from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
 from procs.simulation.physics.ball_body import GRAVITY_M_S2
 from procs.world_model.ball_track import Sighting
@@ -74,6 +74,25 @@ def test_low_bounces_end_the_flight_and_the_carpet_acts_again() -> None:
     landed, grounded_s = flight.moved(0.2, BALL)
     assert landed is None
     assert grounded_s == pytest.approx(0.2 - 2 * 0.6 / GRAVITY_M_S2)
+
+
+@pytest.mark.parametrize("bounce", [0.6, 0.75, 0.9])
+def test_bounces_end_even_if_the_settings_have_no_least(bounce: float) -> None:
+    """The bounces of a ball that keeps a share of its lift last for a finite time, however small they become."""
+    flight = Flight.of_kick(2.0)
+    assert flight is not None
+    lasts_s = 2 * 2.0 / GRAVITY_M_S2 / (1 - bounce)
+    landed, grounded_s = flight.moved(lasts_s + 1.0, BallModel(bounce=bounce, least_rebound_m_s=0.0))
+    assert landed is None
+    assert grounded_s == pytest.approx(1.0, abs=0.03)
+
+
+def test_ball_that_never_stops_bouncing_stays_in_the_air() -> None:
+    flight = Flight.of_kick(2.0)
+    for _ in range(200):
+        assert flight is not None
+        flight, grounded_s = flight.moved(PERIOD_S, BallModel(bounce=1.0, least_rebound_m_s=0.0))
+        assert grounded_s == 0.0
 
 
 def test_kick_along_the_ground_is_no_flight() -> None:
