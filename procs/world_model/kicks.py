@@ -1,8 +1,9 @@
 """Kicks that a robot knows: its own, which it has to tell its mates, and those of its mates."""
 
 import math
+from collections import deque
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from procs.world_model.team import Mate
 from procs.world_model.told import mouth_of
 
 _MESSAGES = 2  # number of messages that tell mates of a kick, because the radio may lose one
+_KICKS = 8  # number of kicks of a mate whose times are known, so that none counts twice
 _OLDEST_S = 0.5  # older kicks of mates are not used
 _FASTEST_M_S = 30.0  # more than the strongest kicker that the settings allow gives, on the fastest robot
 _TIME_SHARE = 0.3  # of a tick: deviation of a kick's time, which lies somewhere in it; the root of 1/12 is 0.29
@@ -37,12 +39,32 @@ class Kick:
     """Place of the ball at the kick (0 or 1), if a mate kicked it."""
 
 
+@dataclass
+class _Heard:
+    """Kicks that a mate has told."""
+
+    kicks: int
+    """Number of its kicks in its newest message."""
+    times_us: deque[int] = field(default_factory=lambda: deque(maxlen=_KICKS))
+    """Times of the last kicks that were returned."""
+
+    def takes(self, message: team_message_t, overtaken: bool) -> bool:
+        """Takes a message; returns whether it tells a new kick.
+
+        A message that a newer one has overtaken may tell an earlier kick than the newer one.
+        """
+        if overtaken:
+            return 0 < message.kicks < self.kicks and message.kick_us not in self.times_us
+        known, self.kicks = self.kicks, message.kicks
+        return message.kicks > known
+
+
 class Kicks:
     """Kicks of a robot and its mates; each kick is returned once."""
 
     def __init__(self) -> None:
         self._own: int | None = None
-        self._of_mates: dict[str, int] = {}
+        self._of_mates: dict[str, _Heard] = {}
         self._messages = 0
 
     @property
@@ -86,11 +108,12 @@ class Kicks:
         """
         found = []
         for message, mate in told:
-            known = self._of_mates.get(mate.name, message.kicks)
-            self._of_mates[mate.name] = message.kicks
+            heard = self._of_mates.setdefault(mate.name, _Heard(message.kicks))
+            is_new = heard.takes(message, mate.overtaken)
             age_s = (now_us - message.kick_us) / US_PER_S
             sound = _is_possible(message.kick_vx_m_s, message.kick_vy_m_s, message.kick_vz_m_s)
-            if message.kicks > known and mate.localized and sound and 0.0 <= age_s <= _OLDEST_S:
+            if is_new and mate.localized and sound and 0.0 <= age_s <= _OLDEST_S:
+                heard.times_us.append(message.kick_us)
                 mouth = mouth_of(mate, mouth_m, message.kick_us / US_PER_S)
                 velocity_m_s = np.array((message.kick_vx_m_s, message.kick_vy_m_s))
                 found.append(Kick(velocity_m_s, message.kick_vz_m_s, age_s, _TIME_SHARE * tick_s, mouth))

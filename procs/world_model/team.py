@@ -1,6 +1,7 @@
 """The newest message of each team mate about itself."""
 
 import math
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -17,6 +18,7 @@ _DRIFT_M_S = 0.5  # highest speed at which this acceleration moves a mate from t
 _TURNING_S = 0.25  # messages further apart do not determine the turning speed
 _EXTRAPOLATED_S = 0.5  # longest extrapolation of a velocity
 _RADIO_S = 0.06  # a message may take this much longer than the one before
+_STAMPS = 32  # number of messages of a mate whose times are known, so that none counts twice
 
 PlaceRow = tuple[float, float, float, float, float, float, float, float]
 """Position x, y (m), velocity vx, vy (m/s), and covariance xx, xy, yx, yy (m²) of the position."""
@@ -47,6 +49,8 @@ class Mate:
     """Its agreement about a pass."""
     omega_rad_s: float = 0.0
     """Turning speed between its last two messages."""
+    overtaken: bool = False
+    """Whether a newer message of it arrived earlier."""
 
     def position_at(self, time_s: float) -> Floats:
         """Returns the probable position (2) at a time near `told_s`."""
@@ -96,45 +100,64 @@ class Places:
         return rows[:, :2], rows[:, 4:].reshape(-1, 2, 2)
 
 
+@dataclass
+class _Heard:
+    """What a mate has told."""
+
+    newest: Mate
+    stamps_s: deque[float]
+    """Times of the last messages, in the order of their arrival."""
+    exposed_us: int = 0
+    """Newest frame that it told."""
+    frames: FramePace = field(default_factory=FramePace)
+    """Pace of these frames."""
+
+
 class Team:
     """The newest message of each mate, until the time-out."""
 
     def __init__(self) -> None:
-        self._mates: dict[str, Mate] = {}
-        self._frames: dict[str, tuple[int, FramePace]] = {}  # newest exposure that each mate told, and their pace
+        self._heard: dict[str, _Heard] = {}
 
     def note(self, mate: Mate) -> Mate | None:
-        """Takes a mate's message; sets and returns the mate with its turning speed.
+        """Takes a mate's message; sets its turning speed and whether it was overtaken, and returns it.
 
-        Returns None if a newer message is known already, because the radio may change the order of messages.
+        The radio may change the order of messages, and deliver one twice. A message that a newer one has overtaken
+        changes no state of the mate. Returns None for a message that is known already.
         """
-        known = self._mates.get(mate.name)
-        if known is not None:
-            passed_s = mate.told_s - known.told_s
-            if passed_s <= 0.0:
-                return None
-            if passed_s <= _TURNING_S and known.localized and mate.localized:
-                mate.omega_rad_s = wrap_rad(mate.heading_rad - known.heading_rad) / passed_s
-        self._mates[mate.name] = mate
+        heard = self._heard.get(mate.name)
+        if heard is None:
+            self._heard[mate.name] = _Heard(mate, deque((mate.told_s,), _STAMPS))
+            return mate
+        newest, stamps_s, passed_s = heard.newest, heard.stamps_s, mate.told_s - heard.newest.told_s
+        mate.overtaken = passed_s < 0.0
+        forgotten = mate.overtaken and len(stamps_s) == _STAMPS and mate.told_s < min(stamps_s)
+        if forgotten or mate.told_s in stamps_s:
+            return None
+        stamps_s.append(mate.told_s)
+        if abs(passed_s) <= _TURNING_S and newest.localized and mate.localized:
+            mate.omega_rad_s = wrap_rad(mate.heading_rad - newest.heading_rad) / passed_s
+        if not mate.overtaken:
+            heard.newest = mate
         return mate
 
-    def next_s(self, mate: str, exposed_us: int, period_s: float) -> float:
+    def next_s(self, mate: Mate, exposed_us: int, period_s: float) -> float:
         """Returns the time after a mate's frame within which its next one arrives, unless a message is lost.
 
         Args:
-            mate: name of the mate.
-            exposed_us: exposure of the frame that its newest message told.
+            mate: the mate as its message tells.
+            exposed_us: exposure of the frame in this message.
             period_s: time from one message to the next.
         """
-        told_us, pace = self._frames.get(mate) or (0, FramePace())
-        if exposed_us != told_us:
-            pace.note(exposed_us)
-            self._frames[mate] = exposed_us, pace
-        return max(pace.next_s, period_s) + _RADIO_S
+        heard, next_s = self._heard.get(mate.name), 0.0
+        if heard is not None:
+            if exposed_us != heard.exposed_us and not mate.overtaken:
+                heard.exposed_us = exposed_us
+                heard.frames.note(exposed_us)
+            next_s = heard.frames.next_s
+        return max(next_s, period_s) + _RADIO_S
 
     def localized(self, now_s: float, timeout_s: float) -> list[Mate]:
         """Returns the mates, by name, that know their place and sent a message within the time-out."""
-        self._mates = {name: mate for name, mate in self._mates.items() if now_s - mate.told_s <= timeout_s}
-        if len(self._frames) > len(self._mates):
-            self._frames = {name: told for name, told in self._frames.items() if name in self._mates}
-        return [mate for _, mate in sorted(self._mates.items()) if mate.localized]
+        self._heard = {name: heard for name, heard in self._heard.items() if now_s - heard.newest.told_s <= timeout_s}
+        return [heard.newest for _, heard in sorted(self._heard.items()) if heard.newest.localized]

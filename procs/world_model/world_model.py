@@ -118,7 +118,7 @@ class WorldModel(Component):
         self._mouth_m = self.config.mouth_m
 
     def _listen(self, now_s: float) -> list[tuple[team_message_t, Mate]]:
-        """Returns the messages of mates that arrived in this tick and are not older than known ones."""
+        """Returns the messages of mates that arrived in this tick, without those that arrived before."""
         told = []
         for message in (message for inbox in self.team_inbox.fresh for message in inbox.messages):
             mate = mate_of(message, now_s) if self._is_of_team(message.robot) else None
@@ -200,7 +200,7 @@ class WorldModel(Component):
             exposed_us = message.obstacles_capture_us or message.header.time_us
             age_s = config.age_s(exposed_us, self.clock.now_us)
             if counts(age_s):
-                next_s = self._team.next_s(mate.name, exposed_us, config.message_period_s)
+                next_s = self._team.next_s(mate, exposed_us, config.message_period_s)
                 seen = obstacles_of(message).widened(config.team_correlation, 1.0)
                 seen = strangers(seen, team, now_s - age_s, rules)
                 self._opponents.see(seen.positions_m, seen.covariances_m2, age_s, next_s)

@@ -174,7 +174,11 @@ def test_team_keeps_the_newest_message_until_the_timeout() -> None:
 
     team = Team()
     assert team.note(word("cyan2", 1.0, 2.0))
-    assert not team.note(word("cyan2", 0.9, 7.0)), "overtaken by a newer one"
+    overtaken = team.note(word("cyan2", 0.9, 7.0))
+    assert overtaken
+    assert overtaken.overtaken
+    assert not team.note(word("cyan2", 0.9, 7.0)), "known already"
+    assert not team.note(word("cyan2", 1.0, 7.0)), "known already"
     team.note(word("cyan1", 1.0, 0.0))
     team.note(word("cyan3", 1.0, 0.0, localized=False))
     mates = team.localized(1.2, 5.0)

@@ -6,7 +6,7 @@ import pytest
 from fwk.testing import Bench
 from lcmtypes.soccer import obstacle_t, team_message_t
 from procs.model.units import US_PER_S
-from procs.world_model.team import Team
+from procs.world_model.team import Mate, Team
 from procs.world_model.world_model import WorldModel
 
 Place = tuple[float, float]
@@ -79,11 +79,19 @@ def test_ghost_that_a_mate_sees_at_times_stays_unknown() -> None:
     assert len(known) == 1
 
 
+def mate(name: str) -> Mate:
+    return Mate(name, "", 1.0, np.zeros(2), 0.0, np.zeros(2), True)
+
+
 def test_next_frame_of_a_mate_comes_at_its_pace() -> None:
-    team = Team()
-    first_s = team.next_s("cyan2", 1_000_000, 0.1)
+    team, second, third = Team(), mate("cyan2"), mate("cyan3")
+    team.note(second)
+    team.note(third)
+    first_s = team.next_s(second, 1_000_000, 0.1)
     assert first_s > 0.1
     for frame in range(1, 4):
-        slow_s = team.next_s("cyan2", 1_000_000 + 200_000 * frame, 0.1)
-    assert team.next_s("cyan2", 1_600_000, 0.1) == slow_s > 0.28, "a frame that is told twice"
-    assert team.next_s("cyan3", 1_600_000, 0.1) == first_s, "a mate of its own"
+        slow_s = team.next_s(second, 1_000_000 + 200_000 * frame, 0.1)
+    assert team.next_s(second, 1_600_000, 0.1) == slow_s > 0.28, "a frame that is told twice"
+    assert team.next_s(third, 1_600_000, 0.1) == first_s, "a mate of its own"
+    second.overtaken = True
+    assert team.next_s(second, 1_400_000, 0.1) == slow_s, "a frame in a message that was overtaken"
