@@ -108,7 +108,7 @@ class Agent(Component):
         idle = roles.Job(self.role.value.role or roles.DEFENDER, view.own.place)
         company, players, duration_s = self._company, self.config.players, self.clock.iteration_s
         kept = company.goal_is_kept(view, field, players, game.sent_off, duration_s)
-        if company.watch(view, duration_s) and view.localized:
+        if company.watch(view, duration_s, game.sent_off) and view.localized:
             job = job_among_silent(view, rank_of(self._robot, players, game.sent_off), field, game)
         else:
             job = roles.assign(view, field, self.config.use_pressing, game, kept).get(self._robot, idle)

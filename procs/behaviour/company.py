@@ -34,14 +34,21 @@ class Company:
 
     def __init__(self) -> None:
         self._unseen_s = math.inf
+        self._heard: set[str] = set()  # the mates that were heard last, unless one was seen since
         self._unkept_s = math.inf
 
-    def watch(self, view: View, duration_s: float) -> bool:
-        """Returns whether the robot hears no mate that plays, but has heard one or seen one drive lately."""
-        hears = any(mate.role != ABSENT for mate in view.mates)
+    def watch(self, view: View, duration_s: float, sent_off: Container[str] = ()) -> bool:
+        """Returns whether the robot hears no mate that plays, but has heard one or seen one drive lately.
+
+        Mates that were heard last and sent off since are no company.
+        """
+        hears = {mate.name for mate in view.mates if mate.role != ABSENT}
         sees = any(math.hypot(*mate.velocity_m_s) > _PLAYS_M_S for mate in view.silent_mates)
         self._unseen_s = 0.0 if hears or sees else self._unseen_s + duration_s
-        return not hears and self._unseen_s < _REMEMBERED_S
+        if hears or sees:
+            self._heard = hears
+        gone = bool(self._heard) and all(name in sent_off for name in self._heard)
+        return not hears and not gone and self._unseen_s < _REMEMBERED_S
 
     def goal_is_kept(
         self, view: View, field: Field, players: Mapping[str, Player], sent_off: Container[str], duration_s: float

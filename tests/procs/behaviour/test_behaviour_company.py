@@ -43,6 +43,14 @@ def test_robot_that_hears_mates_follows_the_roles_of_the_team() -> None:
     assert company.watch(view(own, BALL, (mate._replace(role=ABSENT),)), 1.0), "the last one that played may be silent"
 
 
+def test_mate_that_was_heard_and_sent_off_is_no_company() -> None:
+    company, own = Company(), robot("cyan2", 0.0, 0.0)
+    company.watch(view(own, BALL, (robot("cyan1", 1.0, 1.0),)), 1.0)
+    assert not company.watch(among(own), 1.0, ("cyan1",))
+    assert company.watch(among(own, silent(1.0, 1.0, 1.0)), 1.0, ("cyan1",)), "another one drives"
+    assert company.watch(among(own), 1.0, ("cyan1",))
+
+
 @pytest.mark.parametrize(("name", "rank"), [("cyan1", 0), ("cyan5", 5), ("magenta2", 1), ("zoe", 1)])
 def test_rank_counts_the_lower_numbers_of_the_team(name: str, rank: int) -> None:
     assert rank_of(name, {**PLAYERS, "zoe": Player(team="cyan", number=2)}) == rank
