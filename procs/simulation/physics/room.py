@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import chain, combinations
+from heapq import merge
+from itertools import combinations
 
 from procs.model.field import SIDES, Field, Point, Segment
 from procs.model.geometry import ahead, clamp
@@ -63,16 +64,17 @@ class Room:
         clearance_m: float,
         accepts: Callable[[Point], bool] = lambda _: True,
     ) -> Point | None:
-        """Returns the free place nearest to the wanted one, or 8 % further away at most; None if no place is free.
+        """Returns the free place nearest to the wanted one, of those tried; None if none of them is free.
 
-        The arguments are those of `is_free`; `accepts` may refuse places.
+        Tried are the place to which the robots in the way push the body, and 48 bearings on rings, each 8 % wider than
+        the one before: a free place that is narrower than the steps between them may be missed. The arguments are those
+        of `is_free`; `accepts` may refuse places.
         """
         x_m, y_m = self._x_m - radius_m, self._y_m - radius_m
         wanted = Point(clamp(wanted.x_m, -x_m, x_m), clamp(wanted.y_m, -y_m, y_m))
         beside = free_place(wanted, robots, clearance_m)
-        places = _around(wanted, 2 * math.hypot(self._x_m, self._y_m))
-        if math.dist(wanted, beside) <= clearance_m:
-            places = chain([beside], places)
+        rings = _around(wanted, 2 * math.hypot(self._x_m, self._y_m))
+        places = merge([beside], rings, key=lambda place: math.dist(wanted, place))
         free = (place for place in places if self.is_free(place, radius_m, robots, clearance_m))
         return next(filter(accepts, free), None)
 

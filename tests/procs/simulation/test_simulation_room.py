@@ -139,6 +139,19 @@ def test_full_ground_has_no_free_place() -> None:
     assert room.nearest(Point(1.0, 1.0), BALL.radius_m, robots, APART_M) == pytest.approx((-4.0, 6.0), abs=0.2)
 
 
+def test_place_on_a_ring_is_taken_if_it_is_nearer() -> None:
+    """Two robots push a third away one after the other, 0.47 m far."""
+    robots = [Point(0.15, 0.2), Point(-0.25, -0.1), Point(0.05, -1.05)]
+    place = Room(FIELD).nearest(Point(0.0, 0.0), ROBOT.radius_m, robots, 2 * ROBOT.radius_m)
+    assert place is not None
+    assert math.hypot(*place) < 0.38
+
+
+def test_place_beside_a_robot_is_taken_if_it_is_nearer() -> None:
+    place = Room(FIELD).nearest(Point(0.1, 0.0), BALL.radius_m, [Point(0.0, 0.0)], APART_M)
+    assert place == pytest.approx((APART_M, 0.0))
+
+
 @pytest.mark.parametrize(("vz_m_s", "rises"), [(-5.0, True), (-0.5, False), (-0.001, False)])
 def test_ball_thrown_at_the_ground_bounces_or_lies(vz_m_s: float, rises: bool) -> None:
     system, truth = world_of(place_ball_t(x_m=1.0, y_m=1.0, vz_m_s=vz_m_s))
