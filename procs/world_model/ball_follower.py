@@ -130,7 +130,8 @@ class BallFollower:
 
     def _take_mates_ball(self, news: BallNews) -> None:
         """Takes the ball that mates see, and the one in a mate's mouth unless the own camera sees it elsewhere."""
-        for message, mate in news.told:
+        in_turn = sorted(news.told, key=lambda told: told[1].name)  # as the tracker orders them: it has less to repeat
+        for message, mate in in_turn:
             seen = ball_of(message).widened(self._config.team_correlation, 1.0)
             age_s = self._config.age_s(message.ball_capture_us or message.header.time_us, news.now_us)
             self._see(self._sightings(mate.name, seen, message.ball_z_m, mate.position_m, age_s))

@@ -27,6 +27,8 @@ _OBSERVER_US = 500_000  # a robot observes the ball for so long after a sighting
 _PUT_DOWN, _BY_OWN_CAMERA, _BY_MATE, _HELD, _KICKED = range(5)  # order of the inputs of one moment
 
 _Input = Callable[[BallTrack], None]
+_Turn = tuple[int, str, tuple[float, ...]]
+"""Rank, robot and values of an input; they decide which input of one moment comes first."""
 
 
 @dataclass
@@ -34,8 +36,8 @@ class _Moment:
     """The inputs of one time, and the track after them."""
 
     track: BallTrack
-    inputs: list[tuple[int, _Input]] = field(default_factory=list)
-    """Ranks and inputs."""
+    inputs: list[tuple[_Turn, _Input]] = field(default_factory=list)
+    """Turns and inputs."""
 
 
 class BallTracker:
@@ -122,7 +124,8 @@ class BallTracker:
     def see(self, sighting: Sighting, *others: Sighting) -> None:
         """Takes a sighting; `others` are other things in the same frame that may be the ball, if the first is not."""
         rank = _BY_OWN_CAMERA if sighting.own else _BY_MATE
-        self._take(rank, sighting.age_s, lambda track: track.see(sighting, others))
+        turn = rank, sighting.robot, tuple(sighting.position_m.tolist())
+        self._take(turn, sighting.age_s, lambda track: track.see(sighting, others))
 
     def hold(self, robot: str, state: Floats, covariance: Floats, age_s: float = 0.0) -> None:
         """Takes a ball in a mouth of the team; earlier sightings do not count any more.
@@ -133,7 +136,8 @@ class BallTracker:
             covariance: (4, 4) that the robot's pose and velocity add to it.
             age_s: time since the mouth was looked at.
         """
-        self._take(_HELD, age_s, lambda track: track.hold(robot, state, covariance))
+        turn = _HELD, robot, tuple(state.tolist())
+        self._take(turn, age_s, lambda track: track.hold(robot, state, covariance))
 
     def kick(
         self,
@@ -152,16 +156,17 @@ class BallTracker:
             lift_m_s: velocity upwards.
             time_sd_s: deviation of the age.
         """
-        self._take(_KICKED, age_s, lambda track: track.kick(velocity_m_s, lift_m_s, mouth, time_sd_s))
+        turn = _KICKED, "", (*velocity_m_s.tolist(), lift_m_s)
+        self._take(turn, age_s, lambda track: track.kick(velocity_m_s, lift_m_s, mouth, time_sd_s))
 
     def put_down(self, spot_m: Floats) -> None:
         """Takes a ball that the crew has just put on or beside a spot (2), world frame; earlier inputs do not count.
 
         A ball that seems to lie there already stays where it is.
         """
-        self._take(_PUT_DOWN, 0.0, lambda track: track.put_down(spot_m))
+        self._take((_PUT_DOWN, "", tuple(spot_m.tolist())), 0.0, lambda track: track.put_down(spot_m))
 
-    def _take(self, rank: int, age_s: float, taken: _Input) -> None:
+    def _take(self, turn: _Turn, age_s: float, taken: _Input) -> None:
         """Keeps an input of `age_s` ago, unless that is too old."""
         time_us = self._now_us - round(age_s * US_PER_S)
         times_us = [moment.track.time_us for moment in self._moments]
@@ -172,9 +177,9 @@ class BallTracker:
             self._moments.insert(place, _Moment(BallTrack(time_us, self.ball)))
             self._sound = min(self._sound, place)
         moment = self._moments[place]
-        last = not moment.inputs or moment.inputs[-1][0] <= rank
-        moment.inputs.append((rank, taken))
-        if place < self._sound and last:
+        last = not moment.inputs or moment.inputs[-1][0] <= turn
+        moment.inputs.append((turn, taken))
+        if place < self._sound and (last or place == 0):  # no track is kept that is earlier than the first
             taken(moment.track)
             place += 1
         self._sound = min(self._sound, place)

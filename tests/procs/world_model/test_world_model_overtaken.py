@@ -1,4 +1,4 @@
-"""Messages that newer ones of the same mate overtake: their sightings and kicks count, at their own times."""
+"""Order of arrival: sightings and kicks count at their own times, also in messages that newer ones overtake."""
 
 import math
 from collections.abc import Iterable
@@ -9,6 +9,8 @@ import pytest
 from fwk.testing import Bench
 from lcmtypes.soccer import obstacle_t, team_message_t, world_model_t
 from procs.model.units import US_PER_S
+from procs.world_model.ball_track import Sighting
+from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.kicks import Kicks
 from procs.world_model.told import mate_of
 from procs.world_model.world_model import WorldModel
@@ -139,3 +141,25 @@ def test_state_of_a_mate_is_that_of_its_newest_message() -> None:
         robot.tick()
     for told in (said[1], said[0]):
         assert robot.tick([told]).mates[0].x_m == pytest.approx(-4.0, abs=0.05)
+
+
+@pytest.mark.parametrize("contact", [0.0, 1.0])
+def test_sightings_of_one_exposure_count_in_any_order(contact: float) -> None:
+    """Two mates see a ball that is turned aside at times; one in ten sightings shows another thing."""
+    for seed in range(10):
+        found = []
+        for step in (1, -1):
+            rng, tracker, place_m, velocity_m_s = np.random.default_rng(seed), BallTracker(), np.zeros(2), np.ones(2)
+            for tick in range(40):
+                tracker.advance(PERIOD_US / US_PER_S, 2.0, contact=contact)
+                if tick % 10 == 9:
+                    velocity_m_s = rng.normal(0.0, 2.5, 2)
+                place_m = place_m + velocity_m_s * PERIOD_US / US_PER_S
+                seen = []
+                for name, deviation_m in (("cyan2", 0.05), ("cyan3", 0.12)):
+                    error_m = rng.normal(0.0, 1.0 if rng.random() < 0.1 else deviation_m, 2)
+                    seen.append(Sighting(name, False, place_m + error_m, np.eye(2) * deviation_m**2, 0.08))
+                for sighting in seen[::step] if tick % 2 else ():
+                    tracker.see(sighting)
+            found.append(tracker.track.state.tolist())
+        assert found[0] == found[1], seed
