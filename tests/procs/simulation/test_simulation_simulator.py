@@ -183,14 +183,15 @@ def test_kick_moves_the_ball_and_is_reported() -> None:
     assert [(kick.robot, kick.team) for kick in kicks] == [("magenta1", game_state_t.TEAM_MAGENTA)]
 
 
-def test_goal_counts_for_the_team_that_attacks_it() -> None:
+def test_goal_is_reported_without_a_team() -> None:
+    """The referee knows which team attacks the goal in this half."""
     world = bench(starts={"cyan1": (-0.33, 0.0, 0.0), "magenta1": (5.0, 5.0, 0.0)})
     drive = kicker_drive_t()
     drive.kick_id, drive.kick_m_s = 1, 10.0
     world.port("kicker_drive", "cyan1").put(drive)
     world.iterate(40)
     goals = [event for event in events(world) if event.kind == match_event_t.GOAL]
-    assert [(goal.robot, goal.team) for goal in goals] == [("cyan1", game_state_t.TEAM_CYAN)]
+    assert [(goal.robot, goal.team) for goal in goals] == [("cyan1", game_state_t.TEAM_NONE)]
     assert not world.port("match_events").sent[-1].ball_in_field
     assert world.port("match_events").sent[-1].last_touch == "cyan1"
 
