@@ -13,6 +13,7 @@ _PATH_ERROR = 0.1  # error as a share of the way: wheel scale, encoder noise, sl
 _STANDING_M = 0.002  # error of the place of a standing robot
 _TURN_ERROR = 0.03  # error as a share of the turn
 _STANDING_RAD = 0.002  # error of the heading of a standing robot
+_BLIND_S = 0.2  # time without a frame after which lasting errors of wheels count; before, _PATH_ERROR covers them
 _STRAIN_MEMORY_S = 0.17  # time constant of the mean innovation
 _STRAIN_SHARE = 0.5  # of the squared mean innovation; the rest is noise of the measurements
 _NO_ERROR, _UNIT, _AXES = np.zeros(3), np.eye(3), np.arange(3)
@@ -32,17 +33,33 @@ class PoseFilter:
         """(3, 3) of x, y, heading."""
         self._strain_1_s = np.zeros(3)  # mean innovation for each second between frames
         self._interval_s = _TICK_S  # between the last two frames
+        self._since_frame_s = 0.0
+        self._blind_ways_m = np.zeros((2, 2))  # without frames: sums of the ways ahead and to the left, in columns
+        self._blind_m2 = np.zeros((2, 2))  # the part of the covariance that comes from these ways
 
-    def predict(self, ahead_m: float, left_m: float, turn_rad: float, duration_s: float = _TICK_S) -> None:
-        """Moves the pose by the odometry of `duration_s`: a way in the robot's former frame, and a turn."""
+    def predict(
+        self, ahead_m: float, left_m: float, turn_rad: float, duration_s: float = _TICK_S, scale_sd: float = 0.0
+    ) -> None:
+        """Moves the pose by the odometry of `duration_s`: a way in the robot's former frame, and a turn.
+
+        Ways ahead and ways to the left are wrong by a share each, with the deviation `scale_sd`, which stays the same.
+        Without frames, these errors grow with the whole way, and shrink if the robot drives back.
+        """
         middle_rad = float(self.pose[2]) + turn_rad / 2
-        way_m = rotation(middle_rad) @ (ahead_m, left_m)
+        axes = rotation(middle_rad)
+        way_m = axes @ (ahead_m, left_m)
         self.pose = moved(self.pose, way_m, turn_rad)
         shift = np.array(((1.0, 0.0, -way_m[1]), (0.0, 1.0, way_m[0]), (0.0, 0.0, 1.0)))
         error_m, error_rad = motion_errors(math.hypot(ahead_m, left_m), turn_rad, duration_s)
         strain = self._strain_1_s * math.sqrt(_STRAIN_SHARE * duration_s * self._interval_s)
         noise = strain[:, None] * strain
         noise[_AXES, _AXES] += error_m**2, error_m**2, error_rad**2
+        self._since_frame_s += duration_s
+        if self._since_frame_s > _BLIND_S:
+            self._blind_ways_m += axes * (ahead_m, left_m)
+            blind_m2 = scale_sd**2 * self._blind_ways_m @ self._blind_ways_m.T
+            noise[:2, :2] += blind_m2 - self._blind_m2
+            self._blind_m2 = blind_m2
         _, self.covariance = predict(_NO_ERROR, self.covariance, F=shift, Q=noise)
 
     def correct(self, pose: Floats, covariance: Floats, interval_s: float = _TICK_S) -> None:
@@ -53,6 +70,9 @@ class PoseFilter:
         frame, so what it adds until then depends on the time between frames, not on the length of a tick.
         """
         self._interval_s = interval_s = max(interval_s, 1e-3)
+        if self._since_frame_s > _BLIND_S:
+            self._blind_ways_m, self._blind_m2 = np.zeros((2, 2)), np.zeros((2, 2))
+        self._since_frame_s = 0.0
         innovation = pose - self.pose
         innovation[2] = wrap_rad(float(innovation[2]))
         share = -math.expm1(-interval_s / _STRAIN_MEMORY_S)

@@ -134,7 +134,8 @@ class SelfLocalizer:
         """
         self._since_frame_s += duration_s
         self._since_search_s += duration_s
-        self._filter.predict(motion.ahead_m, motion.left_m, motion.turn_rad, duration_s)
+        scale_sd = self._settings.errors.wheel_scale_sd
+        self._filter.predict(motion.ahead_m, motion.left_m, motion.turn_rad, duration_s, scale_sd)
         self._hypotheses.predict(motion.ahead_m, motion.left_m, motion.turn_rad)
         if len(x_m) < self._settings.least_points:
             return

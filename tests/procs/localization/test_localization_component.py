@@ -239,3 +239,23 @@ def test_heading_of_wheels_may_wrap() -> None:
         bench.port("odometry").put(x_m=x_m, y_m=y_m, heading_rad=math.remainder(heading_rad, math.tau), vx_m_s=2.0)
         bench.iterate()
     assert np.hypot(*robot.error(bench)[:2]) < 0.1, "0.2 m less in the tick in which the heading wraps"
+
+
+@pytest.mark.parametrize(("realism", "scale_sd"), [("realistic", 0.03), ("harsh", 0.06)])
+def test_robot_without_frames_claims_what_it_knows(realism: str, scale_sd: float) -> None:
+    surprises = []
+    for seed in range(8):
+        robot = FakeRobot(seed)
+        robot.scale = 1.0 + scale_sd * np.random.default_rng(seed + 100).standard_normal(2)
+        bench = Bench(Localization, realism=realism, start_x_m=0.0, start_y_m=0.0, start_heading_rad=0.0)
+        course = Course(robot)
+        for tick in range(160):
+            course.step()
+            robot.show(bench)
+            if tick >= 60 or tick % 2:
+                bench.port("line_points").waiting.clear()
+            bench.iterate()
+            if tick >= 120:
+                covariance = np.array(bench.port("pose").sent[-1].covariance)
+                surprises.append(robot.error(bench) @ np.linalg.solve(covariance, robot.error(bench)))
+    assert np.mean(surprises) < 4.0, "3 for an honest covariance"

@@ -9,7 +9,7 @@ from procs.localization.global_search import GlobalSearch
 from procs.localization.line_map import LineMap, line_map
 from procs.localization.line_matching import LinePoints, match
 from procs.localization.pose_filter import PoseFilter
-from procs.model.frames import rotation
+from procs.model.frames import Floats, rotation
 from tests.procs.localization.localization_parts import (
     FIELD,
     REACH_M,
@@ -95,3 +95,43 @@ def test_push_counts_the_same_with_any_length_of_a_tick() -> None:
     assert two == pytest.approx(one)
     assert eight == pytest.approx(one)
     assert one[-1, 0] > 1.5 * one[-1, 1], "pushed along x"
+
+
+def deviation_after(ways: tuple[tuple[float, float], ...], scale_sd: float) -> float:
+    """Returns the deviation of x after ways ahead and turns, a second each, without a frame."""
+    pose_filter = PoseFilter(np.zeros(3), (0.01, 0.01, 0.0))
+    for ahead_m, turn_rad in ((0.0, 0.0), *ways):
+        for _ in range(25):
+            pose_filter.predict(ahead_m / 25, 0.0, turn_rad / 25, 0.04, scale_sd)
+    return float(np.sqrt(pose_filter.covariance[0, 0]))
+
+
+def test_lasting_error_of_wheels_counts_with_the_whole_way() -> None:
+    def share(*ways: tuple[float, float]) -> float:
+        return math.sqrt(deviation_after(ways, 0.03) ** 2 - deviation_after(ways, 0.0) ** 2)
+
+    assert share((3.0, 0.0)) == pytest.approx(0.09)
+    assert share(*[(3.0, 0.0)] * 4) == pytest.approx(0.36)
+    assert share((3.0, 0.0), (-2.0, 0.0)) == pytest.approx(0.03)
+    assert share((3.0, 0.0), (0.0, math.pi), (2.0, 0.0)) == pytest.approx(0.03)
+
+
+def after_frames(scale_sd: float, silent_ticks: int, blind_ticks: int) -> Floats:
+    """Returns the variance after a silence of the camera, 60 frames and ticks without another one, at 2.5 m/s."""
+    pose_filter = PoseFilter(np.zeros(3), (0.01, 0.01, 0.01))
+    for ticks in (silent_ticks, *[2] * 60):
+        for _ in range(ticks):
+            pose_filter.predict(0.1, 0.0, 0.0, 0.04, scale_sd)
+        pose_filter.correct(pose_filter.pose, np.diag((4e-4, 4e-4, 1e-4)), 0.04 * ticks)
+    for _ in range(blind_ticks):
+        pose_filter.predict(0.1, 0.0, 0.0, 0.04, scale_sd)
+    return np.diag(pose_filter.covariance)
+
+
+def test_lasting_error_of_wheels_waits_for_a_missing_frame() -> None:
+    assert np.array_equal(after_frames(0.03, 2, 1), after_frames(0.0, 2, 1))
+
+
+def test_lasting_error_of_wheels_begins_anew_with_a_frame() -> None:
+    assert after_frames(0.03, 50, 50) == pytest.approx(after_frames(0.03, 2, 50), rel=1e-6)
+    assert after_frames(0.03, 2, 50)[0] > after_frames(0.0, 2, 50)[0] + 0.13**2
