@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from procs.model.algebra import product
 from procs.model.estimation import predict, update
 from procs.model.frames import Floats, rotation
 from procs.model.geometry import wrap_rad
@@ -57,7 +58,7 @@ class PoseFilter:
         self._since_frame_s += duration_s
         if self._since_frame_s > _BLIND_S:
             self._blind_ways_m += axes * (ahead_m, left_m)
-            blind_m2 = scale_sd**2 * self._blind_ways_m @ self._blind_ways_m.T
+            blind_m2 = scale_sd**2 * product(self._blind_ways_m, self._blind_ways_m.T)
             noise[:2, :2] += blind_m2 - self._blind_m2
             self._blind_m2 = blind_m2
         _, self.covariance = predict(_NO_ERROR, self.covariance, F=shift, Q=noise)
