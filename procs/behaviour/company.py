@@ -54,20 +54,24 @@ class Company:
         self, view: View, field: Field, players: Mapping[str, Player], sent_off: Container[str], duration_s: float
     ) -> bool:
         """Returns whether the lowest number of the players is not heard, but a silent mate is in the penalty area."""
-        team = team_of_player(view.own.name, players)
-        numbers = [player.number for name, player in players.items() if player.team == team and name not in sent_off]
-        heard = {robot.number for robot in (view.own, *view.mates)}
-        silent = min(numbers, default=view.own.number) not in heard
         seen = any(field.in_penalty_area(*mate.place, -1.0) for mate in view.silent_mates)
         self._unkept_s = 0.0 if seen else self._unkept_s + duration_s
-        return silent and self._unkept_s < _KEEPS_S
+        if self._unkept_s >= _KEEPS_S:
+            return False
+        heard = {robot.number for robot in (view.own, *view.mates)}
+        return min(_numbers(view.own.name, players, sent_off), default=view.own.number) not in heard
 
 
 def rank_of(robot: str, players: Mapping[str, Player], sent_off: Container[str] = ()) -> int:
     """Returns how many players of the robot's team have a lower number, without those that were sent off."""
-    team, number = team_of_player(robot, players), number_of_player(robot, players)
-    team_mates = [player for name, player in players.items() if player.team == team and name not in sent_off]
-    return sum(player.number < number for player in team_mates)
+    own = number_of_player(robot, players)
+    return sum(number < own for number in _numbers(robot, players, sent_off))
+
+
+def _numbers(robot: str, players: Mapping[str, Player], sent_off: Container[str]) -> list[int]:
+    """Returns the numbers of the players of a robot's team, without those that were sent off."""
+    team = team_of_player(robot, players)
+    return [player.number for name, player in players.items() if player.team == team and name not in sent_off]
 
 
 def job_among_silent(view: View, rank: int, field: Field, game: Game = PLAY) -> Job:

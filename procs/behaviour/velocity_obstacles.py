@@ -83,19 +83,22 @@ def safe_velocity(
     others = _Others(near, place, now_m_s, apart_m)
     if others.dangers(np.array([wanted_m_s]), change_m_s2)[0] == 0.0:
         return wanted_m_s
-    nearest = min(near, key=lambda mover: math.dist(mover.place, place))
-    away = Point(place.x_m - nearest.place.x_m, place.y_m - nearest.place.y_m)
-    candidates = _candidates(wanted_m_s, now_m_s, away, min(_LEAST_M_S, fastest_m_s))
+    along = wanted_m_s if math.hypot(*wanted_m_s) > _STANDS_M_S else _away(near, place)
+    candidates = _candidates(wanted_m_s, now_m_s, along, min(_LEAST_M_S, fastest_m_s))
     costs = np.sqrt(((candidates - wanted_m_s) ** 2).sum(axis=1)) + others.dangers(candidates, change_m_s2)
     # Rounding errors must not decide between equals; the first one turns least.
     return Point(*candidates[int(costs.round(_ALIKE).argmin())].tolist())
 
 
-def _candidates(wanted_m_s: Point, now_m_s: Point, away: Point, least_m_s: float) -> Floats:
-    """Returns velocities around the wanted one; a robot that wants to stand turns `away` from the nearest robot."""
-    wanted = math.hypot(*wanted_m_s)
-    along, length = (wanted_m_s, wanted) if wanted > _STANDS_M_S else (away, math.hypot(*away))
-    scale = max(least_m_s, wanted) / max(_STANDS_M_S, length)
+def _away(movers: Sequence[Mover], place: Point) -> Point:
+    """Returns the way from the nearest robot: the direction of one that wants to stand."""
+    nearest = min(movers, key=lambda mover: math.dist(mover.place, place))
+    return Point(place.x_m - nearest.place.x_m, place.y_m - nearest.place.y_m)
+
+
+def _candidates(wanted_m_s: Point, now_m_s: Point, along: Point, least_m_s: float) -> Floats:
+    """Returns velocities to choose from, around the direction `along`."""
+    scale = max(least_m_s, math.hypot(*wanted_m_s)) / max(_STANDS_M_S, math.hypot(*along))
     x, y = along.x_m * scale, along.y_m * scale
     turned = [(x * cos - y * sin, x * sin + y * cos) for cos, sin in _CHANGES]
     return np.array([wanted_m_s, *turned, now_m_s, (0.0, 0.0)])

@@ -102,7 +102,7 @@ class Places:
 
 @dataclass
 class _Heard:
-    """What a mate has told."""
+    """Messages that a mate has sent."""
 
     newest: Mate
     stamps_s: deque[float]

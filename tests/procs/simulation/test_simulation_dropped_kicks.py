@@ -1,4 +1,4 @@
-"""A kick on its way to a kicker, which nobody wants any more: the robot is held or put down, or has no energy left."""
+"""Kicks on their way are dropped when their robot is held or put down, or has an empty battery."""
 
 from typing import Any
 

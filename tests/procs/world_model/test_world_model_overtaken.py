@@ -108,26 +108,28 @@ def test_newest_kick_stays_the_newest() -> None:
         assert robot.tick([told]).ball.vy_m_s > 2.0
 
 
-def test_opponent_in_an_overtaken_message_counts() -> None:
-    robot, said = Listener(), []
+def told_opponents(robot: Listener) -> list[team_message_t]:
+    """Returns the messages of two ticks, not heard yet, about an opponent at (2, 1)."""
+    said = []
     for _ in range(2):
         told = message(robot.now_us)
         told.obstacles_capture_us = robot.now_us
         told.obstacles = [obstacle_t(x_m=2.0, y_m=1.0, radius_m=0.25, team=2, covariance_m2=SPREAD_M2)]
         said.append(told)
         robot.tick()
+    return said
+
+
+def test_opponent_in_an_overtaken_message_counts() -> None:
+    robot = Listener()
+    said = told_opponents(robot)
     assert not robot.tick([said[1]]).opponents
     assert math.isclose(robot.tick([said[0]]).opponents[0].x_m, 2.0, abs_tol=0.1)
 
 
 def test_message_that_arrives_twice_counts_once() -> None:
-    robot, said = Listener(), []
-    for _ in range(2):
-        told = message(robot.now_us)
-        told.obstacles_capture_us = robot.now_us
-        told.obstacles = [obstacle_t(x_m=2.0, y_m=1.0, radius_m=0.25, team=2, covariance_m2=SPREAD_M2)]
-        said.append(told)
-        robot.tick()
+    robot = Listener()
+    said = told_opponents(robot)
     robot.tick([message(robot.now_us - PERIOD_US)])
     for _ in range(3):
         assert not robot.tick([said[1]]).opponents
