@@ -41,7 +41,7 @@ _CARPET = 6
 _NOISE_M2_S3 = np.array((0.0001, 0.002, 5.0, 0.01))
 """Spectral density of the acceleration that each model does not predict."""
 _SPIN_NOISE_M2_S3 = 0.002  # the same for the settled velocity
-_HIT_M_S = 8.0  # deviation of the velocity that a hit adds
+_HIT_M_S = 4.5  # deviation of the velocity that a hit adds: most touches add 1 to 3 m/s, kicks up to 11
 _HIT_SPIN_M_S = 0.3  # deviation of the settled velocity by the spin that a hit adds
 _CARPET_NOISE_1_S = 1e-5  # growth of the variance of the carpet's factor
 _FREE_1_S = np.array(
@@ -55,9 +55,9 @@ _FREE_1_S = np.array(
 """Rates of passing from one model (row) to another (column) without a robot near the ball; `HIT` lasts one step."""
 _CONTACT_1_S = np.array(
     (
-        (0.0, 0.1, 1.5, 0.8),
-        (0.02, 0.0, 3.0, 1.6),
-        (0.3, 1.5, 0.0, 1.6),
+        (0.0, 0.1, 1.0, 0.5),
+        (0.02, 0.0, 1.5, 1.0),
+        (0.3, 1.5, 0.0, 1.0),
         (0.0, 0.0, 0.0, 0.0),
     )
 )

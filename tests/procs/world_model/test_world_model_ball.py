@@ -304,6 +304,19 @@ def test_claim_is_honest_in_every_case(states: list[Floats], contact: bool) -> N
     assert inside_95(states, [contact] * len(states)) >= 0.9
 
 
+def test_held_ball_stays_known_between_two_frames() -> None:
+    """A robot at the ball may kick it at any time, but mostly does not."""
+    tracker, eye = BallTracker(), Eye("a", (-2.0, 0.0), 1, recognised=1.0)
+    for state in carried(20):
+        tracker.advance(PERIOD_S, 2.0, contact=1.0)
+        sighting = eye.look(state[:2], own=True)
+        assert sighting is not None
+        tracker.see(sighting)
+    for _ in range(2):
+        tracker.advance(PERIOD_S, 2.0, contact=1.0)
+    assert np.sqrt(np.diag(tracker.track.covariance)[:2]).max() < 0.13
+
+
 def test_ball_stays_within_the_walls() -> None:
     track = BallFilter(np.array((11.5, 0.0)), np.eye(2) * 0.01**2, BALL)
     track.kick(np.array((8.0, 1.0)))

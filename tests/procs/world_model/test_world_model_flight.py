@@ -260,7 +260,7 @@ def test_slow_ball_that_seems_to_fly_low_does_not_jump() -> None:
 def test_ball_on_the_ground_ends_a_flight_of_uncertain_place() -> None:
     """A robot believes in a long lob; another sees the ball on the ground, where it may well be."""
     tracker = just_lobbed(LIFT_M_S)
-    for _ in range(4):
+    for _ in range(6):
         tracker.advance(PERIOD_S, 2.0, contact=1.0)
     assert tracker.flight is not None
     place_m = tracker.track.state[:2] + 0.3
