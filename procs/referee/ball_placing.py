@@ -1,11 +1,14 @@
 """The ball of a set piece: its spot, the crew that puts it there, and where it was when play was stopped."""
 
 import math
+from collections.abc import Iterable
 
 from procs.model.ball import RADIUS_M
 from procs.model.field import Field, Point
+from procs.referee.rules import Rules
 
 _MISPLACED_M = 0.6  # the crew may have to put the ball beside a robot; further away, a robot has pushed it
+_BESIDE_M = 0.25  # a ball that rests further from its spot is put there as soon as no robot is in the way
 _ROLLS_M_S = 0.2
 _CREW_S = 0.5  # until the report shows a placement
 _PATIENCE = 2  # pushed balls for which robots get their time anew; more would delay the game
@@ -55,9 +58,15 @@ class BallPlacing:
         """Returns whether the crew has not had the time to put the ball on its spot."""
         return self._since_s <= _CREW_S and self._is_away(ball, field)
 
-    def is_pushed_away(self, ball: Point, field: Field) -> bool:
-        """Returns whether a robot has pushed the ball away after the crew had put it down."""
-        return self._since_s > _CREW_S and self._is_away(ball, field)
+    def is_misplaced(self, ball: Point, robots: Iterable[Point], rules: Rules) -> bool:
+        """Returns whether the crew has put the ball down, but it is not on its spot and can be put there.
+
+        A robot has pushed it away, or it rests beside a robot that has left the spot meanwhile; that twice at most.
+        """
+        if self._since_s <= _CREW_S or self._is_away(ball, rules.field):
+            return self._since_s > _CREW_S
+        beside = self._put_back < _PATIENCE and not self.rolls and math.dist(ball, self.spot) > _BESIDE_M
+        return beside and all(math.dist(each, self.spot) > rules.robot.radius_m + 2 * RADIUS_M for each in robots)
 
     def remember(self, ball: Point, field: Field) -> None:
         """Remembers the place of the ball in a running game; of a ball that is out, where it was first seen outside."""

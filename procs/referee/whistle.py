@@ -111,11 +111,11 @@ class Whistle(Match):
                 self._play(sight.ball)
 
     def _guard_ball(self, duration_s: float, sight: Sight) -> None:
-        """Has the ball put back if a robot has pushed it away; starts the game if that was to happen with the ball."""
+        """Has a misplaced ball put back; starts the game if that was to happen with the ball."""
         self._ball.watch(duration_s, sight.ball)
         if self._starting:
             self.start(sight)
-        elif self._ball.is_pushed_away(sight.ball, self.rules.field):
+        elif self._ball.is_misplaced(sight.ball, sight.robots.values(), self.rules):
             self._ball.put_back()
 
     def _wait_for_robots(self, duration_s: float, sight: Sight) -> None:

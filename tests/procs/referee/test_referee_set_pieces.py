@@ -7,6 +7,7 @@ from procs.model.field import Point
 from procs.model.game_states import State
 from procs.model.teams import Team
 from procs.referee.reasons import Reason
+from procs.referee.restarts import Restart
 from tests.procs.referee.script import CYAN, MAGENTA, Script
 
 
@@ -232,3 +233,33 @@ def test_ball_pushed_over_the_line_before_a_throw_in(y_m: float, put_back: bool)
     script.wait(0.2)
     assert script.whistle.placements == placed + put_back
     assert script.started().ball == (Point(3.0, 6.9) if put_back else Point(3.0, y_m))
+
+
+def beside_its_spot(off_m: float) -> Script:
+    """Returns a match with a free kick whose ball the crew could not put nearer to its spot."""
+    script = Script(stoppage_s=5.0).playing()
+    script.whistle.interrupt(Restart(State.FREE_KICK, Team.CYAN, Point(3.0, 1.0)))
+    script.placed, script.ball = script.whistle.placements, Point(3.0 + off_m, 1.0)
+    return script
+
+
+def test_ball_beside_its_spot_is_put_there_when_robots_have_left() -> None:
+    script = beside_its_spot(0.4)
+    placed, script.robots["magenta2"] = script.whistle.placements, Point(3.0, 1.0)
+    script.wait(1.0)
+    assert script.whistle.placements == placed
+    script.robots["magenta2"] = Point(2.4, 1.0)
+    script.wait(0.2)
+    assert script.whistle.placements == placed + 1
+    assert script.ball == (3.0, 1.0)
+
+
+@pytest.mark.parametrize(("off_m", "most"), [(0.2, 0), (0.4, 2)])
+def test_ball_near_its_spot_is_put_back_twice_at_most(off_m: float, most: int) -> None:
+    """Something that the referee does not see may be in the way."""
+    script = beside_its_spot(off_m)
+    placed, place = script.whistle.placements, script.ball
+    for _ in range(100):
+        script.placed, script.ball = script.whistle.placements, place
+        script.tick()
+    assert script.whistle.placements == placed + most
