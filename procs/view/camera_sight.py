@@ -15,6 +15,7 @@ from lcmtypes.soccer import ball_candidate_t, ball_percept_t, line_points_t, obs
 from procs.model.algebra import Floats
 from procs.model.ball import BALL
 from procs.model.robot import TEAM_NUMBERS
+from procs.view.measures import recent
 from procs.vision.calibration import MirrorConfig
 from procs.vision.stereo_rig import StereoRig
 
@@ -34,15 +35,15 @@ class _Lens(Protocol):
     """Maps points of the robot frame to pixels of an image."""
 
     def project(self, points_m: Floats) -> Floats:
-        """Returns the pixels (n, 2) of points (n, 3); NaN where the image does not show them."""
+        """Returns the pixels (n, 2) of points (n, 3) of a thing; NaN where the image does not show them."""
 
 
 class _StereoLens:
     """The left image of the stereo pair, which is the left half of the frame."""
 
-    def __init__(self, rig: StereoRig, width_px: int) -> None:
+    def __init__(self, rig: StereoRig, width_px: int, height_px: int) -> None:
         self._rig = rig
-        self._scale = width_px / (2 * rig.width_px)
+        self._scale = np.array((width_px / (2 * rig.width_px), height_px / rig.height_px))
 
     def project(self, points_m: Floats) -> Floats:
         rig = self._rig
@@ -50,8 +51,11 @@ class _StereoLens:
         ahead_m = np.where(ahead_m > _NEAREST_M, ahead_m, np.nan)
         columns = (rig.width_px - 1) / 2 + rig.focal_px * (rig.baseline_m / 2 - points_m[:, 1]) / ahead_m
         rows = (rig.height_px - 1) / 2 + rig.focal_px * (rig.height_m - points_m[:, 2]) / ahead_m
-        columns = np.where((columns >= 0) & (columns < rig.width_px), columns, np.nan)
-        return np.asarray(np.column_stack((columns, rows)) * self._scale)
+        if not ((columns >= 0) & (columns < rig.width_px)).any():
+            return np.full((len(points_m), 2), np.nan)
+        # The part of a thing that is beside the image is drawn at its edge.
+        pixels = np.clip(np.column_stack((columns, rows)), 0.0, (rig.width_px - 1, rig.height_px - 1))
+        return np.asarray(pixels * self._scale)
 
 
 class _MirrorLens:
@@ -72,17 +76,19 @@ def draw_sight(camera: str, newest: Newest, scene: Scene) -> None:
     frame: frame_t | None = newest(camera)
     if frame is None:
         return
+
+    def found(detections: str) -> Any:
+        return recent(newest(f"{space}/{detections}"), frame)
+
     if name == "stereo_image":
-        obstacles: obstacle_percepts_t | None = newest(f"{space}/stereo_obstacles")
-        _draw_obstacles(
-            obstacles, _StereoLens(StereoRig(**newest.settings(f"{space}/*", "rig")), frame.width_px), scene
-        )
+        rig = StereoRig(**newest.settings(f"{space}/*", "rig"))
+        _draw_obstacles(found("stereo_obstacles"), _StereoLens(rig, frame.width_px, frame.height_px), scene)
         return
     lens = _MirrorLens(newest.settings(f"{space}/*", "mirror"), frame.width_px, frame.height_px)
-    _draw_lines(newest(f"{space}/line_points"), lens, scene)
-    _draw_obstacles(newest(f"{space}/obstacle_percepts"), lens, scene)
+    _draw_lines(found("line_points"), lens, scene)
+    _draw_obstacles(found("obstacle_percepts"), lens, scene)
     ball_radius_m = newest.settings(f"{space}/*", "ball").get("radius_m", BALL.radius_m)
-    _draw_ball(newest(f"{space}/ball_percept"), ball_radius_m, lens, scene)
+    _draw_ball(found("ball_percept"), ball_radius_m, lens, scene)
 
 
 def _draw_ball(ball: ball_percept_t | None, radius_m: float, lens: _MirrorLens, scene: Scene) -> None:
@@ -107,6 +113,8 @@ def _draw_ring(
 ) -> None:
     """Draws the outline of a candidate for the ball, with words above it."""
     column, row, radius_px = lens.mirror.sphere((ball.x_m, ball.y_m, ball.z_m + radius_m), radius_m)
+    if not radius_px > 0.0:  # straight above the mirror
+        return
     x_px, y_px = column + lens.shift_px[0], row + lens.shift_px[1]
     scene.circle(x_px, y_px, radius_px + 2.0, stroke=_BALL, width_m=width_px)
     scene.text(x_px, y_px - radius_px - 10.0, words, _BALL, 10.0)

@@ -22,10 +22,12 @@ def field_drawing(
 ) -> list[Line]:
     """Returns the lines of the largest drawing that fits into `columns` and `rows`; none if that is too small.
 
-    The world's x points to the right. Each goal has the colour of the team that defends it by `ends`.
+    The world's x points to the right. What is beside the field, such as a ball in a goal, is drawn at its edge; a robot
+    is the last digit of its number, or a question mark without one. Each goal has the colour of the team that defends
+    it by `ends`.
     """
     measures = field or Field()
-    length_m, width_m = measures.length_m, measures.width_m
+    length_m, width_m, border_m = measures.length_m, measures.width_m, measures.border_m
     height = min(rows, round(columns * width_m / length_m / _HEIGHT_OF_WIDTH))
     width = min(columns, round(height * length_m / width_m * _HEIGHT_OF_WIDTH))
     if width < _LEAST_COLUMNS or height < _LEAST_ROWS:
@@ -34,12 +36,11 @@ def field_drawing(
     letters = [[_ground(column, row, width, height, goals) for column in range(width)] for row in range(height)]
 
     def put(x_m: float, y_m: float, letter: str, style: str) -> None:
-        if not plausible(x_m, y_m):
+        if not plausible(x_m, y_m) or abs(x_m) > length_m / 2 + border_m or abs(y_m) > width_m / 2 + border_m:
             return
         column = round((x_m / length_m + 0.5) * (width - 1))
         row = round((0.5 - y_m / width_m) * (height - 1))
-        if 0 <= column < width and 0 <= row < height:
-            letters[row][column] = (letter, style)
+        letters[min(max(0, row), height - 1)][min(max(0, column), width - 1)] = (letter, style)
 
     for robot in truth.robots:
         put(robot.x_m, robot.y_m, *_robot(robot))
@@ -48,7 +49,8 @@ def field_drawing(
 
 
 def _robot(robot: true_robot_t) -> tuple[str, str]:
-    return str(number_in(robot))[-1], _STYLES.get(team_in(robot), _PAINT)
+    number = number_in(robot)
+    return str(number)[-1] if number else "?", _STYLES.get(team_in(robot), _PAINT)
 
 
 def _goals(ends: Ends) -> tuple[str, str]:
@@ -66,7 +68,7 @@ def _ground(column: int, row: int, width: int, height: int, goals: tuple[str, st
         return {(True, True): "┌", (True, False): "┐", (False, True): "└", (False, False): "┘"}[top, left], _PAINT
     if top or bottom:
         return "─", _PAINT
-    if left or right or column == width // 2:
+    if left or right or column == round(0.5 * (width - 1)):
         return "│", _PAINT
     return " ", _GROUND
 

@@ -42,7 +42,11 @@ def draw_ground(canvas: Canvas, field: Field) -> None:
 
 
 def arc_places(arc: Arc, steps: int, cap_rad: float = 0.0) -> list[Point]:
-    """Returns `steps` + 1 places on an arc at equal angles; the first and the last are `cap_rad` inside its ends."""
+    """Returns `steps` + 1 places on an arc at equal angles; the first and the last are `cap_rad` inside its ends.
+
+    All are the middle of an arc that is shorter than two caps.
+    """
+    cap_rad = min(cap_rad, (arc.end_rad - arc.start_rad) / 2)
     turn_rad = (arc.end_rad - arc.start_rad - 2 * cap_rad) / steps
     angles = (arc.start_rad + cap_rad + step * turn_rad for step in range(steps + 1))
     return [ahead(arc.centre, angle, arc.radius_m) for angle in angles]

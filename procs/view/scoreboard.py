@@ -5,11 +5,12 @@ from collections.abc import Callable
 from typing import Any
 
 from lcmtypes.soccer import game_event_t, game_state_t, match_history_t
-from procs.model.field import field_of
 from procs.model.game_states import State
+from procs.model.geometry import plausible
 from procs.model.teams import Ends
 from procs.referee.reasons import OFF_FIELD
 from procs.view.field_drawing import field_drawing
+from procs.view.measures import MEASURES, field_in
 
 Newest = Callable[[str], Any]
 """Returns the newest message of a channel, decoded, or None."""
@@ -17,7 +18,6 @@ Newest = Callable[[str], Any]
 GAME_STATE = "world/game_state"
 HISTORY = "world/match_history"
 TRUTH = "world/ground_truth"
-MEASURES = "world/field"
 CHANNELS = (GAME_STATE, HISTORY, TRUTH, MEASURES)
 """Channels whose messages the display passes to this module."""
 
@@ -42,7 +42,9 @@ def phase(state: game_state_t) -> str:
 
 
 def play_time(time_s: float) -> str:
-    """Returns minutes and seconds: `03:12`."""
+    """Returns minutes and seconds: `03:12`; dashes for what is no time of a match."""
+    if not plausible(time_s) or time_s < 0.0:
+        return "--:--"
     minutes, seconds = divmod(int(time_s), 60)
     return f"{minutes:02d}:{seconds:02d}"
 
@@ -57,11 +59,11 @@ def headline(newest: Newest) -> str:
 
 def drawing(newest: Newest, columns: int, rows: int) -> list[list[tuple[str, str]]]:
     """Returns the field with robots and ball for the display; nothing before the first message of the simulator."""
-    truth, measures, state = newest(TRUTH), newest(MEASURES), newest(GAME_STATE)
+    truth, state = newest(TRUTH), newest(GAME_STATE)
     if truth is None:
         return []
     ends = Ends.told(state.cyan_side) if state else None
-    return field_drawing(truth, columns, rows, field_of(measures) if measures else None, ends)
+    return field_drawing(truth, columns, rows, field_in(newest), ends)
 
 
 def summary(newest: Newest) -> list[str]:
@@ -70,7 +72,7 @@ def summary(newest: Newest) -> list[str]:
     if state is None:
         return []
     leader = "cyan" if state.score_cyan > state.score_magenta else "magenta"
-    over = state.state == game_state_t.FROZEN and state.half > 1
+    over = state.state == game_state_t.FROZEN
     verdict = "a draw" if state.score_cyan == state.score_magenta else f"{leader} {'wins' if over else 'leads'}"
     told = _events(newest(HISTORY) or match_history_t(), state.half)
     return [score(state), f"{verdict} after {play_time(state.time_in_half_s)} of half {state.half}", *told]

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from functools import cache
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -10,14 +10,15 @@ import numpy as np
 from lcmtypes.soccer import game_state_t, ground_truth_t, true_robot_t, world_model_t
 from procs.model.ball import BALL as BALL_MODEL
 from procs.model.ball import BallModel
-from procs.model.field import Field, Point, field_of
-from procs.model.geometry import ahead
+from procs.model.field import Field, Point
+from procs.model.geometry import ahead, plausible
 from procs.model.robot import ROBOT, RobotModel, number_in, team_in
 from procs.view.beliefs import draw_beliefs
 from procs.view.canvas import Canvas, Colour, write
 from procs.view.ground import draw_ground
+from procs.view.measures import field_in, recent, settings_in
 from procs.view.palette import TEAM_COLOURS, UNKNOWN_TEAM
-from procs.view.scoreboard import GAME_STATE, MEASURES, TRUTH, phase, play_time
+from procs.view.scoreboard import GAME_STATE, TRUTH, phase, play_time
 from procs.vision.colours import Picture
 
 BODY: Colour = (38, 34, 32)
@@ -30,11 +31,12 @@ TEXT: Colour = (245, 245, 245)
 
 _TAIL_S = 0.12  # the ball's tail shows the way of this time
 _HIGHER = (0.3, -0.4)  # shift of a flying ball's shadow for each metre of height
+_VIEWS = 4  # number of fields whose pictures are kept
 _MARKER = 0.64  # radius of the team marker, as a share of the robot's
 
 
 class TopView:
-    """Draws pictures of one size; cyan's goal is on the left."""
+    """Draws pictures of one size; the world's x points to the right."""
 
     def __init__(
         self,
@@ -69,7 +71,8 @@ class TopView:
         for name, belief in sorted((beliefs or {}).items()):
             draw_beliefs(canvas, teams.get(name, ""), belief)
         for robot in truth.robots:
-            self._draw_robot(canvas, robot)
+            if plausible(robot.x_m, robot.y_m, robot.heading_rad):
+                self._draw_robot(canvas, robot)
         self._draw_ball(canvas, truth)
         self._draw_bar(canvas.picture, state)
         return canvas.picture
@@ -120,30 +123,19 @@ def picture_with_beliefs(newest: Callable[[str], Any]) -> Picture | None:
     truth = newest(TRUTH)
     if truth is None:
         return None
-    models = {robot.name: newest(f"{robot.name}/world_model") for robot in truth.robots}
+    models = {robot.name: recent(newest(f"{robot.name}/world_model"), truth) for robot in truth.robots}
     beliefs = {name: model for name, model in models.items() if model is not None}
     return _view_of(newest).draw(truth, newest(GAME_STATE), beliefs)
 
 
 def _view_of(newest: Callable[[str], Any]) -> TopView:
-    robot, ball = _settings(newest, "robot"), _settings(newest, "ball")
-    return _view(_field(newest), RobotModel.model_construct(**robot), BallModel.model_construct(**ball))
+    robot, ball = settings_in(newest, "robot"), settings_in(newest, "ball")
+    return _view(field_in(newest), RobotModel.model_construct(**robot), BallModel.model_construct(**ball))
 
 
-@cache
+@lru_cache(maxsize=_VIEWS)
 def _view(field: Field, robot: RobotModel, ball: BallModel) -> TopView:
     return TopView(field=field, robot=robot, ball=ball)
-
-
-def _settings(newest: Callable[[str], Any], name: str) -> dict[str, Any]:
-    """Returns the simulator's settings of the robot or the ball; empty, which means the usual ones, if unknown."""
-    return newest.settings("world/*", name) if hasattr(newest, "settings") else {}
-
-
-def _field(newest: Callable[[str], Any]) -> Field:
-    """Returns the field of the match; the usual one if the simulator has not stated it."""
-    measures = newest(MEASURES)
-    return Field() if measures is None else field_of(measures)
 
 
 def _outline(robot: true_robot_t, radius_m: float, mouth_rad: float) -> list[tuple[float, float]]:

@@ -1,19 +1,21 @@
 """The match in the web console: a view from above, and the referee's page."""
 
 from collections.abc import Iterable
+from typing import Any
 
 from fwk.web import Newest, OpenPage, Page, RunAccess, Scene, View
 from lcmtypes.soccer import ground_truth_t, pose_t, true_robot_t, world_model_t
 from procs.model.ball import BALL
-from procs.model.field import SIDES, Field, Point, field_of
-from procs.model.geometry import ahead
+from procs.model.field import SIDES, Field, Point
+from procs.model.geometry import ahead, plausible
 from procs.model.robot import CYAN, MAGENTA, ROBOT, number_in, team_in
 from procs.referee.orders import CARDS, GOALS, HALVES, PLAIN
 from procs.referee.reasons import REPAIRS
 from procs.referee.refusals import SET_PIECES
 from procs.view.camera_sight import CALIBRATION, SEES, draw_sight
 from procs.view.ground import arc_places
-from procs.view.scoreboard import GAME_STATE, MEASURES, TRUTH, headline
+from procs.view.measures import MEASURES, field_in, recent
+from procs.view.scoreboard import GAME_STATE, TRUTH, headline
 
 COLOURS = {CYAN: "#00b0d6", MAGENTA: "#d628aa"}
 MIND = ("pose", "world_model", "drive_target", "role", "skill_status")
@@ -35,13 +37,11 @@ class MatchView(View):
     channels = (TRUTH, MEASURES, GAME_STATE, *(f"*/{name}" for name in MIND))
     sees = SEES
     sight_settings = CALIBRATION
-    settings = ("world/*.robot", "world/*.ball")
+    settings = ("world/*.robot", "world/*.ball", "world/*.field")
 
     def draw(self, newest: Newest, scene: Scene) -> None:
         """Draws the newest messages."""
-        truth = newest(TRUTH)
-        measures = newest(MEASURES)
-        field = field_of(measures) if measures else Field()
+        truth, field = newest(TRUTH), field_in(newest)
         scene.headline = headline(newest)
         scene.background = _SURROUND
         x_m, y_m = field.half_length_m + field.border_m, field.half_width_m + field.border_m
@@ -50,9 +50,10 @@ class MatchView(View):
         if truth is None:
             return
         robot_radius_m = newest.settings("world/*", "robot").get("radius_m", ROBOT.radius_m)
-        for robot in truth.robots:
-            _draw_mind(scene, newest, robot, robot_radius_m)
-        for robot in truth.robots:
+        robots = [each for each in truth.robots if plausible(each.x_m, each.y_m, each.heading_rad)]
+        for robot in robots:
+            _draw_mind(scene, newest, truth, robot, robot_radius_m)
+        for robot in robots:
             _draw_robot(scene, robot, robot_radius_m)
         ball_radius_m = newest.settings("world/*", "ball").get("radius_m", BALL.radius_m)
         _draw_ball(scene, truth, ball_radius_m)  # above the beliefs of the robots about it
@@ -150,11 +151,15 @@ def _draw_ball(scene: Scene, truth: ground_truth_t, radius_m: float) -> None:
     scene.circle(*place, "#fac41e", "#82591a", 0.03, pick="ball", drag="ball", trail="ball")
 
 
-def _draw_mind(scene: Scene, newest: Newest, robot: true_robot_t, radius_m: float) -> None:
-    """Draws the positions of robot and ball in the belief of the robot, its target, role and skill."""
+def _draw_mind(scene: Scene, newest: Newest, truth: ground_truth_t, robot: true_robot_t, radius_m: float) -> None:
+    """Draws the positions of robot and ball in the belief of the robot, its target, role and skill, if it runs."""
     colour = COLOURS.get(team_in(robot), _UNKNOWN)
-    model: world_model_t | None = newest(f"{robot.name}/world_model")
-    pose: pose_t | None = newest(f"{robot.name}/pose")
+
+    def told(name: str) -> Any:
+        return recent(newest(f"{robot.name}/{name}"), truth)
+
+    model: world_model_t | None = told("world_model")
+    pose: pose_t | None = told("pose")
     if model is not None:
         scene.layer("beliefs", of=robot.name)
         if model.localized:
@@ -165,11 +170,11 @@ def _draw_mind(scene: Scene, newest: Newest, robot: true_robot_t, radius_m: floa
         if model.ball.known:
             scene.circle(model.ball.x_m, model.ball.y_m, 0.05, fill=colour)
             scene.ellipse(model.ball.x_m, model.ball.y_m, model.ball.covariance, colour)
-    target = newest(f"{robot.name}/drive_target")
+    target = told("drive_target")
     if target is not None and not target.stop:
         scene.layer("targets", of=robot.name)
         scene.line([(robot.x_m, robot.y_m), (target.x_m, target.y_m)], colour, 0.02, dashed=True)
-    role, skill = newest(f"{robot.name}/role"), newest(f"{robot.name}/skill_status")
+    role, skill = told("role"), told("skill_status")
     words = " ".join(filter(None, (role.role if role else "", skill.skill if skill else "")))
     if words:
         scene.layer("roles", of=robot.name)

@@ -66,3 +66,31 @@ def test_places_that_cannot_be_are_not_drawn(value: float) -> None:
     assert "3" in letters
     assert "●" not in letters
     assert "1" not in letters
+
+
+@pytest.mark.parametrize("columns", [35, 53, 70, 88, 120])
+def test_ball_in_the_goal_and_robots_beside_the_field_show(columns: int) -> None:
+    made = truth()
+    made.ball_x_m, made.ball_y_m = 11.5, 0.0
+    made.robots[0].y_m, made.robots[1].y_m = -7.6, 7.9
+    lines = ["".join(text for text, _ in line) for line in field_drawing(made, columns, 60)]
+    assert any(line.endswith("●") for line in lines)
+    assert "1" in lines[-1]
+    assert "3" in lines[0]
+
+
+def test_ball_on_the_centre_spot_lies_on_the_centre_line() -> None:
+    made = truth()
+    made.ball_x_m = made.ball_y_m = 0.0
+    for columns in range(20, 90):
+        lines = ["".join(text for text, _ in line) for line in field_drawing(made, columns, 60)]
+        ball = next(line.index("●") for line in lines if "●" in line)
+        assert lines[1][ball] == "│"
+
+
+def test_robot_without_a_number_is_a_question_mark() -> None:
+    made = truth()
+    made.robots[0].name = "goalie"
+    joined = "".join(text for line in field_drawing(made, 53, 30) for text, _ in line)
+    assert "?" in joined
+    assert "0" not in joined

@@ -104,3 +104,34 @@ def test_obstacles_of_the_stereo_pair_lie_in_its_left_image() -> None:
     assert words["s"] == "3.0 m"
     columns = [x for x, _ in outline["p"]]
     assert 0 <= min(columns) < 200 < max(columns) < 400
+
+
+def test_obstacle_partly_beside_the_stereo_image_is_drawn() -> None:
+    """Robots near by and to the side are the ones that matter most."""
+    found = obstacles((1.7, -0.8), (0.6, 0.0))
+    shapes = sight("cyan1/stereo_image", stereo_image=frame(800, 200), stereo_obstacles=found)
+    outlines = [shape["p"] for shape in shapes if "p" in shape]
+    assert len(outlines) == 2
+    for outline in outlines:
+        assert all(0 <= x < 400 and 0 <= y < 200 for x, y in outline)
+
+
+def test_stereo_overlay_fits_frames_of_another_shape() -> None:
+    heights = []
+    for width_px, height_px in ((800, 200), (1280, 480)):
+        seen = {"stereo_image": frame(width_px, height_px), "stereo_obstacles": obstacles((3.0, 0.0))}
+        (outline,) = [shape["p"] for shape in sight("cyan1/stereo_image", **seen) if "p" in shape]
+        heights.append(max(y for _, y in outline) / height_px)
+    assert heights[0] == pytest.approx(heights[1], abs=0.01)
+
+
+def test_old_detections_are_not_drawn_over_new_frames() -> None:
+    ball, image = ball_percept_t(), frame(400, 400)
+    ball.visible, ball.x_m, image.header.time_us = True, 2.0, 2_000_000
+    assert sight("cyan1/image", image=image, ball_percept=ball) == []
+
+
+def test_ball_above_the_mirror_is_not_drawn() -> None:
+    ball = ball_percept_t()
+    ball.visible, ball.z_m = True, 0.8
+    assert [shape for shape in sight("cyan1/image", image=frame(400, 400), ball_percept=ball) if "r" in shape] == []

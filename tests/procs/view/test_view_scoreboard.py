@@ -58,9 +58,10 @@ def test_summary_names_the_leader(cyan: int, magenta: int, words: str) -> None:
     assert summary_of(now) == [f"CYAN {cyan} : {magenta} MAGENTA", f"{words} after 15:00 of half 2"]
 
 
-def test_after_the_final_whistle_the_summary_names_the_winner() -> None:
-    now = state(score_cyan=2, score_magenta=1, half=2, state=game_state_t.FROZEN, time_in_half_s=900.0)
-    assert summary_of(now)[1] == "cyan wins after 15:00 of half 2"
+@pytest.mark.parametrize("half", [1, 2])
+def test_after_the_final_whistle_the_summary_names_the_winner(half: int) -> None:
+    now = state(score_cyan=2, score_magenta=1, half=half, state=game_state_t.FROZEN, time_in_half_s=900.0)
+    assert summary_of(now)[1] == f"cyan wins after 15:00 of half {half}"
 
 
 def test_summary_without_a_history_names_score_and_leader() -> None:
@@ -69,6 +70,11 @@ def test_summary_without_a_history_names_score_and_leader() -> None:
 
 def test_long_halves_keep_counting_minutes() -> None:
     assert play_time(6000.0) == "100:00"
+
+
+@pytest.mark.parametrize("time_s", [float("nan"), float("inf"), -1.0, 1e300])
+def test_play_time_of_what_is_no_time_is_dashes(time_s: float) -> None:
+    assert play_time(time_s) == "--:--"
 
 
 def test_summary_lists_the_goals_and_counts_the_whistles() -> None:

@@ -7,9 +7,9 @@ from fwk.web import Newest
 from lcmtypes.soccer import game_state_t, ground_truth_t, true_robot_t, world_model_t
 from procs.model.field import Field
 from procs.simulation.physics.reports import field_message
-from procs.view.ground import GRASS, WHITE
+from procs.view.ground import GRASS, WHITE, arc_places
 from procs.view.palette import TEAM_COLOURS
-from procs.view.top_view import BALL, BAR, SHADOW, TopView, picture, picture_with_beliefs
+from procs.view.top_view import BALL, BAR, SHADOW, TopView, _view, picture, picture_with_beliefs
 from procs.vision.colours import Picture
 
 VIEW = TopView(960)
@@ -94,9 +94,14 @@ def test_extreme_values_are_drawn_or_left_out_but_never_fatal() -> None:
     belief.localized, belief.ball.known = True, True
     belief.x_m, belief.ball.x_m = 1e9, float("nan")
     belief.ball.covariance = [[float("inf")] * 4] * 4
-    wild = truth(("cyan1", float("nan"), 0.0, 0.0), ("goalie", 1e12, 0.0, 0.0))
-    wild.ball_x_m = float("inf")
-    assert VIEW.draw(wild, beliefs={"cyan1": belief}).shape == (VIEW.height_px, 960, 3)
+    inf = float("inf")
+    wild = truth(("cyan1", float("nan"), 0.0, 0.0), ("goalie", 1e12, 0.0, 0.0), ("cyan2", 0.0, 0.0, inf))
+    wild.ball_x_m = inf
+    assert VIEW.draw(wild, game_state_t(time_in_half_s=inf), beliefs={"cyan1": belief}).shape == (
+        VIEW.height_px,
+        960,
+        3,
+    )
 
 
 def test_goal_that_is_deeper_than_wide_is_drawn() -> None:
@@ -113,6 +118,33 @@ def test_picture_of_the_newest_messages() -> None:
     _, columns = np.nonzero((plain != believed).any(axis=2))
     assert columns.mean() / plain.shape[1] == pytest.approx((12.0 + 5.0) / 24.0, abs=0.002)
     assert np.ptp(columns) < 40
+
+
+def test_belief_of_a_silent_robot_is_not_in_the_picture() -> None:
+    belief, now = world_model_t(), truth(("cyan1", 0.0, 0.0, 0.0))
+    belief.localized, belief.x_m, now.header.time_us = True, 5.0, 2_000_000
+    messages = {"world/ground_truth": now, "cyan1/world_model": belief}
+    assert np.array_equal(picture_with_beliefs(messages.get), picture(messages.get))
+
+
+def test_views_of_many_fields_do_not_fill_the_memory() -> None:
+    kept = []
+    for length_m in np.linspace(18.0, 22.0, 8):
+        measures = field_message(Field(length_m=float(length_m)))
+        picture({"world/ground_truth": truth(), "world/field": measures}.get)
+        kept.append(_view.cache_info().currsize)
+    assert max(kept) < 8
+
+
+def test_small_corner_arcs_stay_in_the_field() -> None:
+    """The round ends of a thick line are longer than such an arc."""
+    field = Field(corner_radius_m=0.13)
+    corners = [arc for arc in field.arcs() if arc.radius_m < 0.2]
+    assert len(corners) == 4
+    for arc in corners:
+        for place in arc_places(arc, 48, field.line_width_m / arc.radius_m):
+            assert abs(place.x_m) < field.half_length_m
+            assert abs(place.y_m) < field.half_width_m
 
 
 def test_picture_shows_the_field_of_the_simulation() -> None:

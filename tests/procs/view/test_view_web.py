@@ -2,8 +2,11 @@
 
 import asyncio
 import json
+import math
 from fnmatch import fnmatchcase
 from typing import Any, cast
+
+import pytest
 
 from fwk.web import Newest, RunAccess, Scene
 from lcmtypes.soccer import (
@@ -16,7 +19,7 @@ from lcmtypes.soccer import (
     true_robot_t,
     world_model_t,
 )
-from procs.model.field import Point
+from procs.model.field import Field, Point
 from procs.referee.orders import HALVES, PLAIN, carry_out
 from procs.referee.rules import Rules
 from procs.referee.sight import Sight
@@ -71,8 +74,31 @@ def test_robots_and_ball_have_the_sizes_of_the_settings() -> None:
         assert {shape["drag"]: shape["r"] for shape in shapes if "drag" in shape} == radii_m
     assert all(
         fnmatchcase(f"{component}.{name.partition('.')[0]}", pattern)
-        for (component, name), pattern in zip(sizes, MatchView.settings, strict=True)
+        for (component, name), pattern in zip(sizes, MatchView.settings[:2], strict=True)
     )
+
+
+def test_ground_is_that_of_the_settings_before_the_first_message() -> None:
+    made = drawn(match(), {("world/simulator", "field.length_m"): 18.0})
+    assert made["bounds"][2] == pytest.approx(9.0 + Field().border_m)
+    assert "world/*.field" in MatchView.settings
+
+
+def test_beliefs_of_a_silent_robot_are_not_drawn() -> None:
+    messages = match()
+    assert {shape["l"] for shape in drawn(messages)["shapes"]} > {"beliefs", "targets", "roles"}
+    messages["world/ground_truth"].header.time_us = 16_000_000
+    assert {shape["l"] for shape in drawn(messages)["shapes"]} == {"", "truth"}
+
+
+@pytest.mark.parametrize("wild", [math.inf, math.nan])
+def test_infinite_headings_and_times_are_never_fatal(wild: float) -> None:
+    messages = match()
+    messages["world/ground_truth"].robots[0].heading_rad = wild
+    messages["world/game_state"].time_in_half_s = wild
+    made = drawn(messages)
+    assert [shape["drag"] for shape in made["shapes"] if "drag" in shape] == ["ball"]
+    assert "--:--" in made["headline"]
 
 
 def test_beliefs_targets_and_roles_have_layers_of_their_own() -> None:
