@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from procs.model.ball import BallModel
 
 CYAN, MAGENTA = "cyan", "magenta"
-"""Cyan defends the goal at negative x."""
+"""Cyan defends the goal at negative x in the first half."""
 TEAM_NUMBERS = {CYAN: 1, MAGENTA: 2}
 """Number of each team in messages; 0 is none, or unknown."""
 
@@ -74,7 +74,7 @@ class Player(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     team: Literal["cyan", "magenta"]
-    """Cyan defends the goal at negative x."""
+    """Cyan defends the goal at negative x in the first half."""
     number: int = Field(ge=1, le=NUMBER_MAX)
     """Number on the robot's back; no two players of a team have the same."""
 

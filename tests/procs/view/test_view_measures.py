@@ -17,7 +17,7 @@ SETTINGS = {("world/simulator", "field.length_m"): 18.0, ("world/simulator", "fi
 def test_without_a_message_the_field_is_that_of_the_settings() -> None:
     assert field_in(Newest({}, SETTINGS)) == SMALL
     assert field_in(Newest({})) == Field()
-    assert field_in({}.get) == Field()
+    assert field_in(lambda _: None) == Field()
 
 
 def test_field_of_a_message_comes_before_that_of_the_settings() -> None:

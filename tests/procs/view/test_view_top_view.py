@@ -124,7 +124,10 @@ def test_belief_of_a_silent_robot_is_not_in_the_picture() -> None:
     belief, now = world_model_t(), truth(("cyan1", 0.0, 0.0, 0.0))
     belief.localized, belief.x_m, now.header.time_us = True, 5.0, 2_000_000
     messages = {"world/ground_truth": now, "cyan1/world_model": belief}
-    assert np.array_equal(picture_with_beliefs(messages.get), picture(messages.get))
+    plain, believed = picture(messages.get), picture_with_beliefs(messages.get)
+    assert plain is not None
+    assert believed is not None
+    assert np.array_equal(plain, believed)
 
 
 def test_views_of_many_fields_do_not_fill_the_memory() -> None:
