@@ -1,8 +1,8 @@
 """The field of the middle size league: its measures, lines, marks and goals.
 
-World frame: origin in the centre, x towards the goal that magenta defends in the first half, y to the left of x, metres.
-A `side` is -1.0 for the half and goal of cyan in the first half, and +1.0 for those of magenta. The letters are those of
-the rule book's field drawing; field and areas are measured to the outer edges of their lines.
+World frame: origin in the centre, x towards the goal that magenta defends in the first half, y to the left of x,
+metres. A `side` is -1.0 for the half and goal of cyan in the first half, and +1.0 for those of magenta. The letters are
+those of the rule book's field drawing; field and areas are measured to the outer edges of their lines.
 """
 
 import math
