@@ -76,8 +76,7 @@ def add_drawings(app: FastAPI, console: Console) -> None:
         try:
             link = await asyncio.to_thread(console.link, request.query_params)
             if isinstance(link, RecordedLink):
-                picture = link.run.picture(channel)
-                data = await asyncio.to_thread(_jpeg, picture.pixels()) if picture else None
+                data = await asyncio.to_thread(_recorded_image, link, channel)
             else:
                 pid = (await link.about())["pid"]
                 key = ("image", pid, channel, number)
@@ -161,6 +160,12 @@ def _image(pid: int, channel: str, number: int) -> bytes | None:
     ring = Ring.of_process(pid, channel)
     found = ring.newest(number) if ring else None
     return _jpeg(found[1]) if found else None
+
+
+def _recorded_image(link: RecordedLink, channel: str) -> bytes | None:
+    """Returns the image of a camera at the tick of a recording as JPEG."""
+    picture = link.run.picture(channel, link.tick)
+    return _jpeg(picture.pixels()) if picture else None
 
 
 def _jpeg(pixels: NDArray[np.uint8] | None) -> bytes | None:

@@ -3,7 +3,7 @@
 import threading
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from fwk.lcm.event_log import LogReader
 from fwk.lcm.type_registry import decoded
@@ -19,6 +19,15 @@ _BEGIN_TICKS = 20
 _DECODED_MAX = 8
 _BACK_TICKS = 100
 """After a jump, a channel without a message in so many ticks has no value."""
+
+
+class _Seen(NamedTuple):
+    """What was newest after a tick."""
+
+    messages: dict[str, Any]
+    """By channel."""
+    pictures: dict[str, bytes]
+    """Messages with the images of cameras, by the channel of the camera's frames."""
 
 
 class RecordedRun:
@@ -37,10 +46,10 @@ class RecordedRun:
         """Plan of the recorded run; None: the log has none that can be read."""
         self._lock = threading.Lock()
         self._tick = 0
-        self._newest: dict[str, bytes] = {}
-        self._pictures: dict[str, bytes] = {}
-        self._decoded: dict[int, dict[str, Any]] = {}
-        self._begin = self._read({}, 0, _BEGIN_TICKS)
+        self._newest = _Seen({}, {})
+        """Its messages are encoded."""
+        self._decoded: dict[int, _Seen] = {}
+        self._begin = self._read(_Seen({}, {}), 0, _BEGIN_TICKS).messages
 
     @property
     def last_tick(self) -> int:
@@ -49,24 +58,31 @@ class RecordedRun:
 
     def newest(self, tick: int) -> dict[str, Any]:
         """Returns the newest messages after a tick, decoded, by channel; those of unknown types are left out."""
-        if tick in self._decoded:
-            return self._decoded[tick]
+        return self._seen(tick).messages
+
+    def picture(self, camera: str, tick: int) -> RecordedPicture | None:
+        """Returns the newest image of a camera after a tick; None: its images were not recorded."""
+        data = self._seen(tick).pictures.get(camera)
+        return picture_of(data) if data else None
+
+    def _seen(self, tick: int) -> _Seen:
+        if known := self._decoded.get(tick):
+            return known
         with self._lock:
             if not self._tick <= tick <= self._tick + _BACK_TICKS:
-                self._newest, self._tick = dict(self._begin), max(0, tick - _BACK_TICKS)
-            self._newest = self._read(self._newest, self._tick, tick)
+                self._newest, self._tick = _Seen(self._begin, {}), max(0, tick - _BACK_TICKS)
+            found = self._newest = self._read(self._newest, self._tick, tick)
             self._tick = tick
-            found = dict(self._newest)
         made = {}
-        for channel, data in found.items():
+        for channel, data in found.messages.items():
             try:
                 made[channel] = decoded(data)
             except Exception:  # of generated code, or a type that is not known here
                 continue
         if len(self._decoded) >= _DECODED_MAX:
             self._decoded = {}
-        self._decoded[tick] = made
-        return made
+        seen = self._decoded[tick] = _Seen(made, found.pictures)
+        return seen
 
     def time_us(self, tick: int) -> int:
         """Returns the logical time at which a tick begins."""
@@ -80,15 +96,9 @@ class RecordedRun:
             return read_plan(self._ticks.plan)[0] if self._ticks.plan else None
         return None
 
-    def picture(self, camera: str) -> RecordedPicture | None:
-        """Returns the recorded image of a camera that was read last; None: its images were not recorded."""
-        with self._lock:
-            data = self._pictures.get(camera)
-        return picture_of(data) if data else None
-
-    def _read(self, newest: dict[str, bytes], after: int, until: int) -> dict[str, bytes]:
-        """Returns the newest messages with those of the ticks from `after` to `until`."""
-        made = dict(newest)
+    def _read(self, newest: _Seen, after: int, until: int) -> _Seen:
+        """Returns the newest messages and images, with those of the ticks from `after` to `until`."""
+        made = _Seen(dict(newest.messages), dict(newest.pictures))
         begin, end = self._ticks.position(after + 1), self._ticks.position(until + 1)
         if begin is None:
             return made
@@ -96,9 +106,9 @@ class RecordedRun:
             if end is not None and self._reader.position > end:
                 break
             if not event.channel.startswith("fwk/"):
-                made[event.channel] = event.data
+                made.messages[event.channel] = event.data
             if picture := picture_of(event.data):
-                self._pictures[picture.camera] = event.data
+                made.pictures[picture.camera] = event.data
         return made
 
 

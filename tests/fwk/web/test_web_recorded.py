@@ -12,7 +12,7 @@ from fwk.recording.play.timeline import Timeline
 from fwk.web import recorded_ticks
 from fwk.web.recorded import LOG, RecordedRun
 from fwk.web.recorded_ticks import RecordedTicks, contents
-from lcmtypes.core import log_t
+from lcmtypes.core import log_t, picture_t, plan_t, tick_record_t
 from tests.fwk.recording.play.play_logs import heard, recording
 
 LINE = dict.fromkeys(log_t.__slots__, 0) | {"level": "info", "component": "supervisor", "tick": 7, "text": "goal"}
@@ -57,6 +57,22 @@ def test_bookmarks_of_a_run_that_goes_on_are_shown(tmp_path: Path, monkeypatch: 
     log = recording(tmp_path / LOG)
     (tmp_path / "fwk.log.jsonl").write_text(NOTE)
     assert [(note.tick, note.text) for note in contents(log).notes] == [(7, "goal")]
+
+
+def test_a_tick_seen_again_shows_its_own_picture(tmp_path: Path) -> None:
+    with LogWriter(tmp_path / LOG, print) as log:
+        log.append("fwk/plan", plan_t().encode(), 0)
+        for tick in range(1, 11):
+            if tick >= 3:
+                log.append("fwk/frame", picture_t(camera="cyan1/image", frame=tick).encode(), tick)
+            log.append("fwk/record", tick_record_t(tick=tick).encode(), tick)
+    run = RecordedRun(tmp_path)
+    for tick in (9, 4, 9, 10, 4):
+        run.newest(tick)
+        picture = run.picture("cyan1/image", tick)
+        assert picture is not None
+        assert picture.frame == tick
+    assert run.picture("cyan1/image", 2) is None
 
 
 def test_logs_without_ticks_and_empty_ones_are_told_apart(tmp_path: Path) -> None:
