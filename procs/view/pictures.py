@@ -11,6 +11,9 @@ from lcmtypes.core import picture_t
 from procs.model.units import US_PER_S
 from procs.vision.colours import Picture
 
+_CHANNELS = (1, 3, 4)
+"""Numbers of channels that jpeg and png support."""
+
 
 class PicturesConfig(Config):
     """Settings of the pictures on the bus."""
@@ -18,7 +21,7 @@ class PicturesConfig(Config):
     rate_hz: float = Setting(default=2.0, ge=0.0)
     """Most pictures of each camera per second of logical time; 0: every frame."""
     format: Literal["jpeg", "png"] = "jpeg"
-    """jpeg is small and lossy; png is lossless and large."""
+    """jpeg is small and lossy; png is lossless and large. Frames of 2, or over 4, channels are sent as raw bytes."""
     quality: int = Setting(default=80, ge=1, le=100)
     """Quality of a jpeg picture; 100 is best."""
     longest_px: int = Setting(default=0, ge=0)
@@ -57,14 +60,25 @@ class Pictures(Component):
         config, picture = self.config, self.pictures.value
         longer_px = max(pixels.shape[:2])
         if 0 < config.longest_px < longer_px:
-            factor = config.longest_px / longer_px
-            smaller = cv2.resize(pixels, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA)
-            pixels = np.asarray(smaller, np.uint8)
+            height_px, width_px = (max(1, round(each * config.longest_px / longer_px)) for each in pixels.shape[:2])
+            pixels = _scaled(pixels, width_px, height_px)
+        picture.camera, picture.frame = camera, frame
+        picture.height_px, picture.width_px, picture.channels = (*pixels.shape, 1)[:3]
+        picture.format, picture.data = self._encoded(pixels)
+        self.pictures.write()
+
+    def _encoded(self, pixels: Picture) -> tuple[str, bytes]:
+        """Returns format and bytes."""
+        config = self.config
+        if pixels.ndim == 3 and pixels.shape[2] not in _CHANNELS:
+            return "raw", pixels.tobytes()
         how = (
             [cv2.IMWRITE_JPEG_QUALITY, config.quality] if config.format == "jpeg" else [cv2.IMWRITE_PNG_COMPRESSION, 1]
         )
-        _, data = cv2.imencode(f".{config.format}", pixels, how)
-        picture.camera, picture.frame, picture.format = camera, frame, config.format
-        picture.height_px, picture.width_px, picture.channels = (*pixels.shape, 1)[:3]
-        picture.data = data.tobytes()
-        self.pictures.write()
+        return config.format, cv2.imencode(f".{config.format}", pixels, how)[1].tobytes()
+
+
+def _scaled(pixels: Picture, width_px: int, height_px: int) -> Picture:
+    parts = cv2.split(pixels) if pixels.ndim == 3 and pixels.shape[2] > max(_CHANNELS) else [pixels]
+    smaller = [cv2.resize(each, (width_px, height_px), interpolation=cv2.INTER_AREA) for each in parts]
+    return np.asarray(np.dstack(smaller), np.uint8)

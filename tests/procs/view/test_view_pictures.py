@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
+from fwk.recording.pictures import picture_of
 from fwk.testing import Bench, MemorySystem
 from lcmtypes.core import picture_t
 from procs.simulation.camera import Camera
@@ -75,6 +76,33 @@ def test_large_pictures_are_scaled_down() -> None:
     pictures.iterate()
     (picture,) = pictures.port("pictures").sent
     assert (picture.height_px, picture.width_px) == (30, 40) == decoded(picture).shape[:2]
+
+
+@pytest.mark.parametrize("kind", ["jpeg", "png"])
+@pytest.mark.parametrize("channels", [2, 5])
+def test_frames_of_two_channels_are_sent_as_raw_bytes(channels: int, kind: str) -> None:
+    """And those of five."""
+    pixels = np.dstack([NOISE, NOISE])[:, :, :channels]
+    pictures = bench(format=kind)
+    pictures.show("image", pixels, "cyan1")
+    pictures.iterate()
+    (picture,) = pictures.port("pictures").sent
+    made = picture_of(picture.encode())
+    assert (picture.format, picture.n) == ("raw", pixels.size)
+    assert made is not None
+    assert np.array_equal(np.asarray(made.pixels()), pixels)
+
+
+@pytest.mark.parametrize(
+    ("shape", "size"), [((1, 3000, 3), (1, 100, 3)), ((3000, 8, 2), (100, 1, 2)), ((3000, 9, 5), (100, 1, 5))]
+)
+def test_narrow_frames_keep_at_least_one_row(shape: tuple[int, ...], size: tuple[int, ...]) -> None:
+    """And at least one column."""
+    pictures = bench(longest_px=100)
+    pictures.show("image", np.zeros(shape, np.uint8), "cyan1")
+    pictures.iterate()
+    (picture,) = pictures.port("pictures").sent
+    assert (picture.height_px, picture.width_px, picture.channels) == size
 
 
 def test_lost_frame_gives_no_picture() -> None:
