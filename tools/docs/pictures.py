@@ -18,6 +18,7 @@ from fwk.display.screen import screen
 from fwk.display.view import STATUS_CHANNEL, View
 from fwk.lcm import messages
 from fwk.lcm.stamped_log import StampedLog
+from fwk.lcm.type_registry import header_of
 from fwk.recording.replay.recording import Recording
 from fwk.recording.video import drawing
 from lcmtypes.core import status_t
@@ -45,16 +46,21 @@ def main() -> None:
 
 
 def packets(log: Path, last_tick: int) -> Iterator[bytes]:
-    """Yields the messages of a recording as a display gets them, until a status is beyond the last tick."""
+    """Yields the messages of a recording as a display gets them, until a component's message is beyond the last tick.
+
+    A status beyond it is left out: the supervisor writes one now and then in real time.
+    """
     for event in StampedLog(log):
         data = event.data
         if event.channel == STATUS_CHANNEL:
             status = messages.decode(status_t, data, event.channel)
             if status.tick > last_tick:
-                return
+                continue
             for host in status.hosts:
                 host.pid = 0  # of an ended process, whose number may belong to another one now
             data = status.encode()
+        elif not event.channel.startswith("fwk/") and (head := header_of(data)) and head.tick > last_tick:
+            return
         yield event.channel.encode() + b"\0" + data
 
 
