@@ -33,9 +33,11 @@ LINE: Colour = (255, 229, 0)
 _SHIFT = 4  # OpenCV takes coordinates in sixteenths of a pixel
 _STEPS = 32  # number of points on the outline of a foot
 _ROBOT = "cyan3"
-_LAUNCH = (
-    "include: {file}\nname: sight\ncomponents: {{world/pictures: {{use: procs.view.pictures, config: {config}}}}}\n"
-)
+_PICTURES = "sight/pictures"
+"""A component of this program, besides those of the launch file."""
+_LAUNCH = "include: {file}\nname: sight\ncomponents: {{{name}: {{use: procs.view.pictures, config: {config}}}}}\n"
+_DETECTOR = "omni_ball"
+"""Component of a robot whose settings tell mirror and ball."""
 _SUFFIXES = (".png", ".jpg")
 _FINE = "{format: png, rate_hz: 0}"
 
@@ -76,21 +78,22 @@ def _fine(pixels: Floats, scale: int) -> np.ndarray[tuple[int, int], np.dtype[np
     return np.round(larger.clip(-4096, 4096) * (1 << _SHIFT)).astype(np.int32)
 
 
-def sight_in(system: MemorySystem, robot: str, mirror: Mirror, ball_radius_m: float = RADIUS_M) -> Picture | None:
+def sight_in(system: MemorySystem, robot: str, mirror: MirrorConfig, ball_radius_m: float = RADIUS_M) -> Picture | None:
     """Returns the newest picture of a robot's camera with the findings of its tick; None if there is none.
 
-    The system needs a component `world/pictures` that publishes every picture.
+    It shows what the detectors see of the frame. The system needs a component `sight/pictures` that publishes every
+    picture.
     """
-    for data in reversed(system.sent["world/pictures"]):
+    for data in reversed(system.sent[_PICTURES]):
         seen = picture_t.decode(data)
         if seen.camera != f"{robot}/image":
             continue
         pixels = np.asarray(cv2.imdecode(np.frombuffer(seen.data, np.uint8), cv2.IMREAD_COLOR), np.uint8)
         tick = seen.header.tick
-        ball = _of_tick(system.sent[f"{robot}/ball_percept"], ball_percept_t, tick)
-        obstacles = _of_tick(system.sent[f"{robot}/obstacle_percepts"], obstacle_percepts_t, tick)
-        lines = _of_tick(system.sent[f"{robot}/line_points"], line_points_t, tick)
-        return drawn(pixels, mirror, ball, obstacles, lines, ball_radius_m=ball_radius_m)
+        ball = _of_tick(system.sent.get(f"{robot}/ball_percept", ()), ball_percept_t, tick)
+        obstacles = _of_tick(system.sent.get(f"{robot}/obstacle_percepts", ()), obstacle_percepts_t, tick)
+        lines = _of_tick(system.sent.get(f"{robot}/line_points", ()), line_points_t, tick)
+        return drawn(mirror.fitted(pixels), mirror.mirror(), ball, obstacles, lines, ball_radius_m=ball_radius_m)
     return None
 
 
@@ -121,20 +124,21 @@ def main() -> None:
         raise SystemExit(f"'{asked.file}' cannot be written: there is no folder '{asked.file.parent}'")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "sight.yaml"
-        file.write_text(_LAUNCH.format(file=json.dumps(_included(asked.launch)), config=_FINE))
+        file.write_text(_LAUNCH.format(file=json.dumps(_included(asked.launch)), name=_PICTURES, config=_FINE))
         try:
             launch_plan(asked.launch)  # its mistakes name the file that was asked for
-            settings = settings_in(str(file), f"{asked.robot}/camera")
+            settings = settings_in(str(file), f"{asked.robot}/{_DETECTOR}")
         except KeyError as error:
             names = (each.name for each in launch_plan(str(file)).components)
-            there = ", ".join(name.removesuffix("/camera") for name in names if name.endswith("/camera")) or "none"
-            raise SystemExit(f"{asked.launch}: no camera of {asked.robot}; robots with one: {there}") from error
+            robots = [robot for robot, _, short in (name.rpartition("/") for name in names) if short == _DETECTOR]
+            there = ", ".join(robots) or "none"
+            raise SystemExit(f"{asked.launch}: no {_DETECTOR} of {asked.robot}; robots with one: {there}") from error
         except PlanError as error:
             raise SystemExit(str(error)) from error
         system = system_of(str(file), seed=asked.seed)
         while system.now_us < asked.time * US_PER_S:
             system.tick()
-        mirror = MirrorConfig(**settings["mirror"]).mirror()
+        mirror = MirrorConfig(**settings["mirror"])
         picture = sight_in(system, asked.robot, mirror, settings["ball"]["radius_m"])
     if picture is None:
         raise SystemExit(f"no picture of {asked.robot}/image until {asked.time:g} s; a later --time would show one")

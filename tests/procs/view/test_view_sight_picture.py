@@ -10,6 +10,7 @@ from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t, 
 from procs.view import sight_picture
 from procs.view.sight_picture import BALL, LINE, OBSTACLE, drawn
 from procs.vision.mirror import Mirror
+from tests.procs.vision.picture_parts import shades, write_folder
 
 MIRROR = Mirror()
 
@@ -60,7 +61,7 @@ def test_command_draws_the_camera_of_a_match(tmp_path: Path, monkeypatch: pytest
     assert picture.shape == (2 * MIRROR.size_px, 2 * MIRROR.size_px, 3)
     assert (picture == LINE).all(axis=2).sum() > 100
     monkeypatch.setattr("sys.argv", [*words[:-4], "--robot", "cyan9", "--time", "0.1"])
-    with pytest.raises(SystemExit, match="no camera of cyan9"):
+    with pytest.raises(SystemExit, match="no omni_ball of cyan9"):
         sight_picture.main()
 
 
@@ -72,9 +73,9 @@ def test_command_draws_the_camera_of_a_match(tmp_path: Path, monkeypatch: pytest
         (["sight.png", "--launch", "soccer-1vs1.yaml"], "no such launch file; did you mean 'soccer-1v1.yaml'?"),
         (
             ["sight.png", "--robot", "cyan9"],
-            "soccer.yaml: no camera of cyan9; robots with one: cyan1, cyan2, cyan3, cyan4",
+            "soccer.yaml: no omni_ball of cyan9; robots with one: cyan1, cyan2, cyan3, cyan4",
         ),
-        (["sight.png", "--launch", "soccer-truth.yaml"], "no camera of cyan3; robots with one: none"),
+        (["sight.png", "--launch", "soccer-truth.yaml"], "no omni_ball of cyan3; robots with one: none"),
         (
             ["sight.png", "--launch", "soccer-1v1.yaml", "--robot", "cyan1", "--time", "0"],
             "no picture of cyan1/image until 0 s; a later --time",
@@ -99,3 +100,32 @@ def test_command_takes_launch_files_of_the_user(launch: str, tmp_path: Path, mon
     monkeypatch.setattr("sys.argv", words)
     sight_picture.main()
     assert cv2.imread(str(tmp_path / "sight.png")) is not None
+
+
+def test_sight_of_a_camera_driver_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It shows the part of the frames that the detectors see."""
+    folder = write_folder(tmp_path / "seen", [np.dstack([each[:, :, :2], 0 * each[:, :, 2]]) for each in shades(9)])
+    camera = f"{{use: procs.drivers.camera_driver, config: {{source: {folder}}}}}"
+    detector = "{use: procs.vision.omni_ball, config: {mirror: {size_px: 200}}}"
+    text = f"components:\n  cyan1/camera: {camera}\n  cyan1/omni_ball: {detector}\n"
+    (tmp_path / "mine.yaml").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    words = ["sight_picture", "sight.png", "--launch", "mine.yaml", "--robot", "cyan1", "--time", "0.4"]
+    monkeypatch.setattr("sys.argv", words)
+    sight_picture.main()
+    picture = cv2.imread(str(tmp_path / "sight.png"))
+    assert picture is not None
+    assert picture.shape == (400, 400, 3)
+    assert np.median(picture, axis=(0, 1)).tolist() == [56, 56, 0]
+
+
+def test_launch_file_with_pictures_of_its_own_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = "components: {world/pictures: {use: procs.view.pictures, config: {longest_px: 100}}}"
+    (tmp_path / "mine.yaml").write_text(f"include: soccer-1v1.yaml\nname: mine\n{own}\n")
+    monkeypatch.chdir(tmp_path)
+    words = ["sight_picture", "sight.png", "--launch", "mine.yaml", "--robot", "cyan1", "--time", "0.3"]
+    monkeypatch.setattr("sys.argv", words)
+    sight_picture.main()
+    picture = cv2.imread(str(tmp_path / "sight.png"))
+    assert picture is not None
+    assert (picture == LINE).all(axis=2).any()
