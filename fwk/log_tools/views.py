@@ -42,6 +42,7 @@ from fwk.clock import US_PER_S
 from fwk.lcm.messages import current_name, type_name
 from fwk.log_tools.frames import comment_frame, full_frame
 from fwk.log_tools.positions import Position, positions_in
+from fwk.recording.pictures import as_picture
 from lcmtypes.core import log_t
 
 PREFIX = "view/"
@@ -88,7 +89,7 @@ def views_of(channel: str, message: Any, time_us: int) -> Iterator[View]:
 def frame_view(camera: str, pixels: NDArray[np.uint8], time_us: int) -> View:
     """Returns a frame of a camera as an image, compressed: height x width, or height x width x 3 (blue, green, red)."""
     stamp = Timestamp(time_us // US_PER_S, time_us % US_PER_S * 1000)
-    data = cv2.imencode(".jpg", pixels)[1].tobytes()
+    data = cv2.imencode(".jpg", as_picture(pixels))[1].tobytes()
     return View(PREFIX + camera, CompressedImage(timestamp=stamp, frame_id=camera, format="jpeg", data=data))
 
 

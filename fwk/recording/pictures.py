@@ -62,6 +62,13 @@ def picture_of(data: bytes) -> RecordedPicture | None:
     return RecordedPicture(made.camera, made.frame, header.tick, header.time_us, shape, made.format, bytes(made.data))
 
 
+def as_picture(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Returns a frame as picture files hold it: of one with 2, or over 4, channels the first channel."""
+    return (
+        np.ascontiguousarray(pixels[:, :, 0]) if pixels.ndim == 3 and pixels.shape[2] not in _PNG_CHANNELS else pixels
+    )
+
+
 def compressed(pixels: NDArray[np.uint8]) -> tuple[str, bytes]:
     """Compresses a frame without loss; returns format and bytes.
 

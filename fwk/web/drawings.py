@@ -22,6 +22,7 @@ from fwk.control.client import ControlError, RefusedError
 from fwk.display.graph import graph
 from fwk.display.graph_svg import svg
 from fwk.lcm.event_log import LogError
+from fwk.recording.pictures import as_picture
 from fwk.web.console import Console
 from fwk.web.device_view import DeviceView
 from fwk.web.general_view import GeneralView
@@ -171,5 +172,5 @@ def _recorded_image(link: RecordedLink, channel: str) -> bytes | None:
 def _jpeg(pixels: NDArray[np.uint8] | None) -> bytes | None:
     if pixels is None:
         return None
-    done, data = cv2.imencode(".jpg", pixels)
+    done, data = cv2.imencode(".jpg", as_picture(pixels))
     return data.tobytes() if done else None

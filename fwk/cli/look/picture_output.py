@@ -13,6 +13,7 @@ from rich.style import Style
 from rich.text import Text
 
 from fwk.program import BAD_INPUT, FAILED
+from fwk.recording.pictures import as_picture
 
 Pixels = NDArray[np.uint8]
 SUFFIXES = (".bmp", ".jpeg", ".jpg", ".png", ".ppm", ".tif", ".tiff", ".webp")
@@ -23,6 +24,8 @@ def save(pixels: Pixels, file: Path, raw: bool = False) -> None:
     """Writes a picture in the format of the file's suffix, or its bytes as they are."""
     if not raw and file.suffix.lower() not in SUFFIXES:
         fail(f"{file}: the name has no suffix of a picture; use one of {', '.join(SUFFIXES)}, or --raw", BAD_INPUT)
+    if not raw and as_picture(pixels) is not pixels:
+        fail(f"{file}: no picture file has {pixels.shape[2]} channels; --raw saves the bytes as they are", BAD_INPUT)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_bytes(pixels.tobytes() if raw else cv2.imencode(file.suffix.lower(), pixels)[1].tobytes())
@@ -41,7 +44,7 @@ def as_text(pixels: Pixels, columns: int, rows: int) -> Text:
     height_px, width_px = pixels.shape[:2]
     factor = min(columns / width_px, 2 * rows / height_px)
     size = max(1, round(width_px * factor)), 2 * max(1, round(height_px * factor / 2))
-    small = cv2.resize(pixels, size, interpolation=cv2.INTER_AREA if factor < 1 else cv2.INTER_NEAREST)
+    small = cv2.resize(as_picture(pixels), size, interpolation=cv2.INTER_AREA if factor < 1 else cv2.INTER_NEAREST)
     colours = small if small.ndim == 3 else cv2.cvtColor(small, cv2.COLOR_GRAY2BGR)
     text = Text(no_wrap=True, end="")
     for upper, lower in zip(colours[::2].tolist(), colours[1::2].tolist(), strict=True):

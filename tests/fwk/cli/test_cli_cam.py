@@ -69,6 +69,21 @@ def test_raw_bytes_are_those_of_the_frame(log: Path) -> None:
     assert (log.parent / "one.bin").read_bytes() == (NOISE // 3).tobytes()
 
 
+@pytest.mark.parametrize("channels", [2, 5])
+def test_frames_that_no_picture_file_holds_are_saved_raw(tmp_path: Path, channels: int) -> None:
+    pixels = np.dstack([NOISE, NOISE])[:, :, :channels]
+    picture = picture_t(camera="cyan1/depth", format="raw", data=pixels.tobytes(), n=pixels.size)
+    picture.height_px, picture.width_px, picture.channels = pixels.shape
+    with LogWriter(tmp_path / "log.lcm", print) as writer:
+        writer.append("world/pictures", picture.encode(), 0)
+    words = ("cyan1/depth", "--log", tmp_path / "log.lcm", "--save")
+    said = cam(*words, tmp_path / "one.png", code=2)
+    assert f"no picture file has {channels} channels; --raw saves the bytes" in said
+    cam(*words, tmp_path / "one.bin", "--raw")
+    assert (tmp_path / "one.bin").read_bytes() == pixels.tobytes()
+    assert as_text(pixels, 40, 20) == as_text(np.ascontiguousarray(pixels[:, :, 0]), 40, 20)
+
+
 @pytest.mark.parametrize(
     ("arguments", "error"),
     [
