@@ -9,6 +9,7 @@ import pytest
 from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t, obstacle_t
 from procs.view import sight_picture
 from procs.view.sight_picture import BALL, LINE, OBSTACLE, drawn
+from procs.vision.colours import Picture
 from procs.vision.mirror import Mirror
 from tests.procs.vision.picture_parts import shades, write_folder
 
@@ -102,30 +103,28 @@ def test_command_takes_launch_files_of_the_user(launch: str, tmp_path: Path, mon
     assert cv2.imread(str(tmp_path / "sight.png")) is not None
 
 
+def sight_of(launch: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Picture:
+    """Returns the sight of cyan1 in a launch file after 0.4 s."""
+    (folder / "mine.yaml").write_text(launch)
+    monkeypatch.chdir(folder)
+    words = ["sight_picture", "sight.png", "--launch", "mine.yaml", "--robot", "cyan1", "--time", "0.4"]
+    monkeypatch.setattr("sys.argv", words)
+    sight_picture.main()
+    return np.asarray(cv2.imread(str(folder / "sight.png")), np.uint8)
+
+
 def test_sight_of_a_camera_driver_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It shows the part of the frames that the detectors see."""
     folder = write_folder(tmp_path / "seen", [np.dstack([each[:, :, :2], 0 * each[:, :, 2]]) for each in shades(9)])
     camera = f"{{use: procs.drivers.camera_driver, config: {{source: {folder}}}}}"
     detector = "{use: procs.vision.omni_ball, config: {mirror: {size_px: 200}}}"
     text = f"components:\n  cyan1/camera: {camera}\n  cyan1/omni_ball: {detector}\n"
-    (tmp_path / "mine.yaml").write_text(text)
-    monkeypatch.chdir(tmp_path)
-    words = ["sight_picture", "sight.png", "--launch", "mine.yaml", "--robot", "cyan1", "--time", "0.4"]
-    monkeypatch.setattr("sys.argv", words)
-    sight_picture.main()
-    picture = cv2.imread(str(tmp_path / "sight.png"))
-    assert picture is not None
+    picture = sight_of(text, tmp_path, monkeypatch)
     assert picture.shape == (400, 400, 3)
     assert np.median(picture, axis=(0, 1)).tolist() == [56, 56, 0]
 
 
 def test_launch_file_with_pictures_of_its_own_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     own = "components: {world/pictures: {use: procs.view.pictures, config: {longest_px: 100}}}"
-    (tmp_path / "mine.yaml").write_text(f"include: soccer-1v1.yaml\nname: mine\n{own}\n")
-    monkeypatch.chdir(tmp_path)
-    words = ["sight_picture", "sight.png", "--launch", "mine.yaml", "--robot", "cyan1", "--time", "0.3"]
-    monkeypatch.setattr("sys.argv", words)
-    sight_picture.main()
-    picture = cv2.imread(str(tmp_path / "sight.png"))
-    assert picture is not None
+    picture = sight_of(f"include: soccer-1v1.yaml\nname: mine\n{own}\n", tmp_path, monkeypatch)
     assert (picture == LINE).all(axis=2).any()
