@@ -22,7 +22,7 @@ _BACK_TICKS = 100
 
 
 class _Seen(NamedTuple):
-    """What was newest after a tick."""
+    """Newest messages and images after a tick."""
 
     messages: dict[str, Any]
     """By channel."""

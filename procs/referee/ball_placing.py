@@ -63,8 +63,10 @@ class BallPlacing:
 
         A robot has pushed it away, or it rests beside a robot that has left the spot meanwhile; that twice at most.
         """
-        if self._since_s <= _CREW_S or self._is_away(ball, rules.field):
-            return self._since_s > _CREW_S
+        if self._since_s <= _CREW_S:
+            return False
+        if self._is_away(ball, rules.field):
+            return True
         beside = self._put_back < _PATIENCE and not self.rolls and math.dist(ball, self.spot) > _BESIDE_M
         return beside and all(math.dist(each, self.spot) > rules.robot.radius_m + 2 * RADIUS_M for each in robots)
 

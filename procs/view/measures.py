@@ -1,7 +1,7 @@
-"""What a view needs besides the newest messages: measures of the field, settings, and the age of messages."""
+"""Measures of the field, settings and the age of messages, for all views of a match."""
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -9,10 +9,7 @@ from procs.model.field import Field
 from procs.model.units import US_PER_S
 
 MEASURES = "world/field"
-_NAMES = tuple(Field.model_fields)
 _SILENT_S = 1.0  # what a component wrote so long before is not shown as present
-
-M = TypeVar("M")
 
 
 def settings_in(newest: Callable[[str], Any], name: str) -> dict[str, Any]:
@@ -26,15 +23,16 @@ def field_in(newest: Callable[[str], Any]) -> Field:
     Impossible measures, such as those of a damaged message, do not count.
     """
     told = newest(MEASURES)
-    measures = settings_in(newest, "field") if told is None else {name: getattr(told, name) for name in _NAMES}
     try:
-        return Field(**measures)
+        if told is None:
+            return Field(**settings_in(newest, "field"))
+        return Field.model_validate(told, from_attributes=True)
     except ValidationError:
         return Field()
 
 
-def recent(message: M, shown: Any) -> M | None:
+def recent(message: Any, shown: Any) -> Any:
     """Returns a message; None if its component was silent for a second before the message that is shown."""
-    if message is None or shown.header.time_us - message.header.time_us > _SILENT_S * US_PER_S:  # type: ignore[attr-defined]
+    if message is None or shown.header.time_us - message.header.time_us > _SILENT_S * US_PER_S:
         return None
     return message

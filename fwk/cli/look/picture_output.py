@@ -13,7 +13,7 @@ from rich.style import Style
 from rich.text import Text
 
 from fwk.program import BAD_INPUT, FAILED
-from fwk.recording.pictures import as_picture
+from fwk.recording.pictures import as_picture, fits_picture
 
 Pixels = NDArray[np.uint8]
 SUFFIXES = (".bmp", ".jpeg", ".jpg", ".png", ".ppm", ".tif", ".tiff", ".webp")
@@ -24,7 +24,7 @@ def save(pixels: Pixels, file: Path, raw: bool = False) -> None:
     """Writes a picture in the format of the file's suffix, or its bytes as they are."""
     if not raw and file.suffix.lower() not in SUFFIXES:
         fail(f"{file}: the name has no suffix of a picture; use one of {', '.join(SUFFIXES)}, or --raw", BAD_INPUT)
-    if not raw and as_picture(pixels) is not pixels:
+    if not raw and not fits_picture(pixels):
         fail(f"{file}: no picture file has {pixels.shape[2]} channels; --raw saves the bytes as they are", BAD_INPUT)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""What views need besides the newest messages."""
+"""Measures of the field, and the age of messages, in views of a match."""
 
 import math
 

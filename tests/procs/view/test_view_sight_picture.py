@@ -114,7 +114,7 @@ def sight_of(launch: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Pict
 
 
 def test_sight_of_a_camera_driver_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It shows the part of the frames that the detectors see."""
+    """The picture shows the part of the frames that the detectors see."""
     folder = write_folder(tmp_path / "seen", [np.dstack([each[:, :, :2], 0 * each[:, :, 2]]) for each in shades(9)])
     camera = f"{{use: procs.drivers.camera_driver, config: {{source: {folder}}}}}"
     detector = "{use: procs.vision.omni_ball, config: {mirror: {size_px: 200}}}"
