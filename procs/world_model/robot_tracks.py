@@ -89,6 +89,10 @@ class RobotTracks:
         self._x = self._x @ motion.T
         self._p = motion @ self._p @ motion.T + noise
 
+    def drop(self, numbers: Sequence[int]) -> None:
+        """Ends the tracks with these `ids`."""
+        self._keep(~np.isin(self.ids, numbers))
+
     def see(self, positions_m: Floats, covariances_m2: Floats, age_s: float = 0.0, next_s: float = 0.0) -> None:
         """Takes the sightings that one robot made in one frame, captured `age_s` ago, each of a different robot.
 

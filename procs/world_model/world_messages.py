@@ -32,9 +32,13 @@ def fill_world_model(
     team: Sequence[PlaceRow],
     opponents: RobotTracks,
     silent: RobotTracks,
+    quiet: frozenset[int],
     now_s: float,
 ) -> None:
-    """Fills in the beliefs of the robot at `now_s`; `team` begins with the places of the `mates`."""
+    """Fills in the beliefs of the robot at `now_s`.
+
+    `team` begins with the places of the `mates`; silent robots with the numbers `quiet` are among these.
+    """
     message.localized = view.localized
     message.x_m, message.y_m, message.heading_rad = view.pose.tolist()
     message.vx_m_s, message.vy_m_s = view.velocity_m_s.tolist()
@@ -42,7 +46,7 @@ def fill_world_model(
     rows = zip(mates, team[: len(mates)], strict=True)
     message.mates = [_mate(mate, place, now_s) for mate, place in rows]
     message.opponents = _robots(opponents)
-    message.silent_mates = _robots(silent) if len(silent) else []
+    message.silent_mates = [robot for robot in _robots(silent) if robot.id not in quiet] if len(silent) else []
 
 
 def fill_team_message(message: team_message_t, view: OwnView, ball: Seen, obstacles: Seen) -> None:

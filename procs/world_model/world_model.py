@@ -33,6 +33,7 @@ from procs.world_model.frame_pace import FramePace
 from procs.world_model.opponents import strangers
 from procs.world_model.own_view import OwnView
 from procs.world_model.possession import holder_of
+from procs.world_model.quiet_mates import QuietMates, in_time
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
 from procs.world_model.settings import RESTART_S, STALE_S, WorldModelConfig, counts
@@ -67,7 +68,8 @@ class WorldModel(Component):
         self._robot = self.name.rpartition("/")[0]
         self._ball = BallFollower(self._robot, self.config)
         self._opponents = RobotTracks()
-        self._silent = RobotTracks()  # mates that do not state their places
+        self._silent = RobotTracks()  # mates that do not state their places, or not at present
+        self._quiet = QuietMates(self._silent)
         self._frames = FramePace()  # of the camera that sees the obstacles
         self._percepts = FramePace()  # of percepts of the ball, in the ticks in which they come
         self._apply_settings()
@@ -91,11 +93,15 @@ class WorldModel(Component):
         self._view = view
         told = self._listen(now_s)
         mates = self._team.localized(now_s, config.mate_timeout_s)
-        team = Places([*mates, view.as_mate(self._robot, now_s)] if view.localized else mates)
+        seen = self._quiet.as_seen(mates, passed_s, now_s)
+        team = Places([*seen, view.as_mate(self._robot, now_s)] if view.localized else seen)
         places = team.rows_at(now_s)
         self._follow_ball(view, places, told, passed_s)
-        self._follow_robots(view, team, places, len(mates), told, passed_s)
-        robots = self._opponents, self._silent
+        self._follow_robots(view, team, mates, told, passed_s)
+        self._quiet.find(mates, now_s, config.mate_radius_m)
+        if self._quiet.ids:
+            places = Places(self._quiet.as_seen(mates, 0.0, now_s)).rows_at(now_s)
+        robots = self._opponents, self._silent, self._quiet.ids
         fill_world_model(self.world_model.value, view, self._ball.tracker, mates, places, *robots, now_s)
         holder = holder_of(self.world_model.value, self._robot, self._holds, mates, now_s, self._mouth_m)
         self.world_model.value.ball_holder = holder
@@ -170,14 +176,13 @@ class WorldModel(Component):
         self,
         view: OwnView,
         team: Places,
-        places: Sequence[PlaceRow],
-        mates: int,
+        mates: Sequence[Mate],
         told: list[tuple[team_message_t, Mate]],
         passed_s: float,
     ) -> None:
         """Tracks opponents and silent mates by the obstacles of the own camera and of mates.
 
-        The first `mates` robots of `team` are the mates; `places` are the places of the team now.
+        The robots of the `team` are the `mates`, late ones as they are seen, and the robot itself.
         """
         config, rules, now_s = self.config, self._rules, self.clock.now_s
         for tracks in filter(len, (self._opponents, self._silent)):
@@ -187,11 +192,11 @@ class WorldModel(Component):
         if self.obstacle_percepts.refreshed and counts(age_s):
             self._frames.note(percepts.capture_us or self.clock.now_us)
             next_s = self._frames.next_s
-            known, own = team.first(mates), self._own_team
+            own, known, heard = self._own_team, team.first(len(mates)), Places(in_time(mates, now_s))
             seen = strangers(view.obstacles(percepts, age_s, own), known, now_s - age_s, rules)
             self._untold_obstacles = seen
-            silent = view.mates(percepts, age_s, own, places[:mates], config.mate_radius_m)
-            silent = strangers(silent, known, now_s - age_s, rules)
+            silent = view.mates(percepts, age_s, own, heard.rows_at(now_s), config.mate_radius_m)
+            silent = strangers(silent, heard, now_s - age_s, rules)
             self._silent.see(silent.positions_m, silent.covariances_m2, age_s, next_s)
             self.team_message.value.obstacles_capture_us = percepts.capture_us or self.clock.now_us
             seen = seen.widened(config.sight_correlation, config.pose_correlation)

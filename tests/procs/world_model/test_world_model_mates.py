@@ -7,7 +7,7 @@ import pytest
 
 from lcmtypes.soccer import obstacle_t, team_message_t
 from procs.world_model.team import Mate, Places
-from tests.procs.world_model.team_on_bench import PERIOD_S, Robot, TeamOnBench, decoded, team
+from tests.procs.world_model.team_on_bench import PERIOD_S, Robot, decoded, team
 
 
 def test_robot_sends_its_own_sighting_ten_times_a_second() -> None:
@@ -224,23 +224,6 @@ def test_kick_counts_although_the_mouth_still_saw_the_ball() -> None:
         robot.bench.iterate()
         if tick == 10:
             assert robot.world.ball.vx_m_s == pytest.approx(6.0, abs=0.3)
-
-
-def test_mate_that_fell_silent_hides_no_opponent() -> None:
-    """The mate drives away with a broken radio; an opponent and later the mate are seen where it was not."""
-    watching, leaving = Robot("cyan1", (0.0, 0.0, 0.0), seed=1), Robot("cyan3", (3.0, 0.0, 1.0), seed=2)
-    both, opponent_m = TeamOnBench([watching, leaving]), np.array((4.5, 1.0))
-    for _ in range(40):
-        both.tick(None, others_m=(opponent_m,))
-    for tick in range(80):
-        seen_m = [opponent_m] if tick < 40 else [opponent_m, np.array((3.0, -1.5))]
-        watching.sense(None, seen_m, teams=(2, 1))
-        watching.bench.iterate()
-        opponents = watching.world.opponents
-        assert [(one.x_m, one.y_m) for one in opponents] == [pytest.approx((4.5, 1.0), abs=0.2)]
-    silent = watching.world.silent_mates
-    assert [(one.x_m, one.y_m) for one in silent] == [pytest.approx((3.0, -1.5), abs=0.2)]
-    assert watching.world.mates[0].covariance_m2[0][0] > 1.0  # its last place is old
 
 
 def test_robot_of_the_other_team_is_no_mate() -> None:
