@@ -21,6 +21,7 @@ _SET_PIECES = {
 }
 _GOALS_MAX = 99  # a RefBox counts no further
 _HALVES = {1: "FIRST_HALF", 2: "SECOND_HALF", 3: "FIRST_HALF_OVERTIME", 4: "SECOND_HALF_OVERTIME"}
+_OVERTIME_IS_DRAWN = [Command("SECOND_HALF_OVERTIME"), Command("STOP"), Command("END_GAME")]
 _BREAKS = (game_state_t.HALF_TIME, game_state_t.FROZEN)
 _CARDS = {game_event_t.YELLOW: "YELLOW_CARD", game_event_t.DOUBLE_YELLOW: "DOUBLE_YELLOW", game_event_t.RED: "RED_CARD"}
 _AWAY = (game_event_t.DOUBLE_YELLOW, game_event_t.RED)
@@ -47,17 +48,21 @@ def news(
     commands = _scores(before, now) + _robots(before, now, events, players)
     if now.state != before.state and now.state in _BREAKS:
         return commands + _break(now)
+    start = [] if now.stopped else [Command("START")]
+    if now.half == halves.PENALTIES != before.half:
+        drawn = before.half == halves.FOURTH and before.state in _BREAKS
+        return commands + ([] if drawn else _OVERTIME_IS_DRAWN) + _stopped(now) + start
     if now.half != before.half or _begins_again(before, now):
         commands += _half(now.half)
-    if now.stopped and _piece(now) != _piece(before):
-        commands += [Command("STOP"), *_stopped(now)] if not before.stopped else _stopped(now)
-    if before.stopped and not now.stopped:
-        commands.append(Command("START"))
-    return commands
+    if now.stopped and not before.stopped:
+        commands += [Command("STOP"), *_stopped(now)]
+    elif before.stopped and _piece(now) != _piece(before):
+        commands += _stopped(now)
+    return commands + (start if before.stopped else [])
 
 
-def _piece(state: game_state_t) -> tuple[bool, int, int, float, float]:
-    return state.stopped, state.state, state.state_team, state.ball_x_m, state.ball_y_m
+def _piece(state: game_state_t) -> tuple[int, int, float, float]:
+    return state.state, state.state_team, state.ball_x_m, state.ball_y_m
 
 
 def _robots(
@@ -149,7 +154,8 @@ def _until_penalty(now: game_state_t, events: Sequence[game_event_t]) -> list[Co
     drawn = game_state_t()
     before = [getattr(now, f"score_{name}") - scored[team] for team, name in TEAMS.items()]
     drawn.score_cyan = drawn.score_magenta = max(0, min(before))
-    commands = [*_half(halves.FOURTH), *_scores(game_state_t(), drawn), Command("STOP"), Command("END_GAME")]
+    half, *end = _OVERTIME_IS_DRAWN
+    commands = [half, *_scores(game_state_t(), drawn), *end]
     for goal in _scores(drawn, now):
         commands += [Command("PENALTY", goal.team), goal]
     return commands

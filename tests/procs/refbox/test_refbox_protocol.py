@@ -110,6 +110,18 @@ def test_stream_is_cut_at_nul_bytes_wherever_they_arrive() -> None:
             state(game_state_t.KICK_OFF, 2, half=2),
             ["SECOND_HALF", "KICKOFF magenta"],
         ),
+        (KICK_OFF, state(game_state_t.KICK_OFF, 2, stopped=False), ["KICKOFF magenta", "START"]),  # at once
+        (
+            state(game_state_t.HALF_TIME, half=2),
+            state(game_state_t.PENALTY, 1, half=5),
+            ["SECOND_HALF_OVERTIME", "STOP", "END_GAME", "PENALTY cyan"],
+        ),
+        (
+            state(game_state_t.PENALTY, 1),
+            state(game_state_t.PENALTY, 1, half=5, stopped=False),
+            ["SECOND_HALF_OVERTIME", "STOP", "END_GAME", "PENALTY cyan", "START"],
+        ),
+        (state(game_state_t.FROZEN, half=4), state(game_state_t.PENALTY, 2, half=5), ["PENALTY magenta"]),
         (
             state(game_state_t.THROW_IN, 1, half=2, time_in_half_s=9.0),
             state(game_state_t.KICK_OFF, 2, half=2),
