@@ -1,5 +1,6 @@
 """Run of a scenario in memory: its components, its mistakes and its verdict."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, get_type_hints
 
@@ -72,6 +73,18 @@ def _check(scenario: Scenario, document: Document) -> None:
             document.values(config, "settings", name, who=name, what="setting")
         elif values:
             document.add(f"settings: {name} has no settings", "settings", name)
+    for name, setting, where in _stated(scenario):
+        if setting in scenario.settings.get(name, {}):
+            text = f"settings: '{setting}' of {name} is stated under {where}, too; keep one"
+            document.add(text, "settings", name, setting)
+
+
+def _stated(scenario: Scenario) -> Iterator[tuple[str, str, str]]:
+    """Yields the settings that other keys of the file state: component, setting, and the key."""
+    yield from (("world/referee", rule, "rules") for rule in scenario.rules)
+    for setting, key in (("starts", "places"), ("realism", "realism")):
+        if key in scenario.model_fields_set:
+            yield "world/simulator", setting, key
 
 
 def _check_run(scenario: Scenario, document: Document) -> None:

@@ -43,6 +43,21 @@ from tests.procs.scenarios.scenario_files import written
             "world/referee: 'half_s' is -1; it should be greater than 0",
         ),
         ("settings: {world/crew: {actions: []}}", ScenarioError, "settings: world/crew has its actions under commands"),
+        (
+            "rules: {half_s: 9}\nsettings: {world/referee: {half_time_s: 9, half_s: 8}}",
+            ScenarioError,
+            "mine.yaml:2: settings: 'half_s' of world/referee is stated under rules, too; keep one",
+        ),
+        (
+            "robots: [cyan1]\nplaces: {cyan1: [1, 0, 0]}\nsettings: {world/simulator: {starts: {cyan1: [2, 0, 0]}}}",
+            ScenarioError,
+            "settings: 'starts' of world/simulator is stated under places, too; keep one",
+        ),
+        (
+            "realism: none\nsettings: {world/simulator: {realism: harsh}}",
+            ScenarioError,
+            "settings: 'realism' of world/simulator is stated under realism, too; keep one",
+        ),
         ("commands: [{at_s: 1}]", ScenarioError, "'commands.0' is {'at_s': 1}; give one of place_ball, place_robot"),
         (
             "commands: [{place_ball: {x: 1}}]",
