@@ -18,6 +18,7 @@ from procs.refbox.world_state import best_belief, encode, intention_of, world_st
 _IGNORED = frozenset({"WELCOME", "IS_ALIVE", "REPAIR_END", "TESTMODE_ON", "TESTMODE_OFF"})
 _OTHER_NAMES = {"GAMEOVER": "END_GAME", "GAME_OVER": "END_GAME"}
 _TIMEOUT_S = 1.0  # within which the referee answers a command
+_OPEN_MAX = 64  # commands that may wait for the referee; it refuses more
 _SILENT_S = 2.0  # a robot that has told nothing for so long is left out of the report
 
 
@@ -68,6 +69,7 @@ class RefBoxClient(Component):
 
     def init(self) -> None:
         self._connection = Connection(self.clock, self.log)
+        self._commands: list[Command] = []  # not handed on yet
         self._sent: list[Sent] = []
         self._reported_us = 0  # when the newest report was due
 
@@ -77,8 +79,9 @@ class RefBoxClient(Component):
         self._warn("the referee does not obey", [call.reason for call in finished if not call.done])
         config, connection = self.config, self._connection
         connection.attend(config.host, config.port, config.retry_s, config.connect_s)
-        messages = connection.messages()
-        self._warn("RefBox", [mistake for message in messages if (mistake := self._hand_on(message))])
+        messages = connection.messages() if len(self._commands) < _OPEN_MAX else []
+        self._warn("RefBox", [mistake for message in messages if (mistake := self._take(message))])
+        self._hand_on()
         if config.report_s and connection.ready and self.clock.since_s(self._reported_us) >= config.report_s:
             self._report()
 
@@ -92,15 +95,22 @@ class RefBoxClient(Component):
             more = f" (and {len(reasons) - 1} more)" if len(reasons) > 1 else ""
             self.log.warning(f"{what}: {reasons[0]}{more}")
 
-    def _hand_on(self, message: bytes) -> str:
-        """Hands a command on; returns why the message is no command, or an empty text."""
+    def _take(self, message: bytes) -> str:
+        """Takes a command; returns why the message is no command, or an empty text."""
         try:
             command = decode(message, self.config.addresses.model_dump())
         except ProtocolError as error:
             return str(error)
         if self.config.obeys and command.name not in _IGNORED:
-            self._call(command)
+            self._commands.append(command)
         return ""
+
+    def _hand_on(self) -> None:
+        """Hands on as many commands as may wait for the referee; the others follow in the next ticks."""
+        free = _OPEN_MAX - len(self._sent)
+        for command in self._commands[:free]:
+            self._call(command)
+        del self._commands[:free]
 
     def _call(self, command: Command) -> None:
         asked = self.referee_command.value

@@ -274,6 +274,24 @@ def test_command_behind_a_flood_is_obeyed(refbox: socket.socket) -> None:
     assert not [line.text for line in system.logged if "lost the RefBox" in line.text]
 
 
+def test_commands_that_arrive_at_once_are_all_obeyed(refbox: socket.socket) -> None:
+    """As many as a station gets that connects late; more than may wait for the referee."""
+    components = {"world/refbox": RefBoxClient, "world/referee": Referee, "world/simulator": Simulator}
+    settings = {"world/refbox": {"port": refbox.getsockname()[1]}, "world/referee": {"automatic": False}}
+    system = MemorySystem(components, settings=settings)
+    system.tick()
+    connection, _ = refbox.accept()
+    with connection:
+        connection.sendall(say("GOAL", CYAN) * 90 + say("GOAL", MAGENTA) * 80)
+        for _ in range(100):
+            system.tick()
+            if system.newest("world/game_state").score_magenta == 80:
+                break
+    system.runners["world/refbox"].component.finalize()
+    game = system.newest("world/game_state")
+    assert (game.score_cyan, game.score_magenta) == (90, 80)
+
+
 def test_refused_commands_of_a_tick_are_one_line(refbox: socket.socket) -> None:
     components = {"world/refbox": RefBoxClient, "world/referee": Referee, "world/simulator": Simulator}
     system = MemorySystem(components, settings={"world/refbox": {"port": refbox.getsockname()[1]}})
