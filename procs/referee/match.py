@@ -92,6 +92,14 @@ class Match:
         self.interrupt(self._next_penalty() if self.shootout else restarts.kick_off(beginner), reason)
         self._begun = False
 
+    def resume(self, half: int, restart: Restart, stopped: bool, placements: int, sight: Sight) -> None:
+        """Goes on in the middle of a half; `placements` is the number of the newest placement."""
+        self.half, self.ends = half, halves.ends_of(half, self.rules)
+        self._ball.spot, self._ball.number = restart.spot, placements
+        self.started = self._begun = not stopped
+        self._enter(restart.state, restart.team, stopped)
+        self._begin_stretch(sight)
+
     def kicks_off(self, half: int) -> Team:
         """Returns the team that was given the kick-off of a half that has not begun; NONE without one."""
         prepared = half == self.half and self.state is State.KICK_OFF and not self._begun
@@ -143,10 +151,7 @@ class Match:
         self._enter(self.state, self.team, stopped=False)
         self.held = self._changing_ends = False
         self.started = self._begun = True
-        excused = misplaced_robots(self.restart, sight, self.ends, self.rules.field) if sight else []
-        ball = sight.ball if sight else self.spot
-        keeper = sight.goalkeeper(self.team.other) if sight else ""
-        self._stretch = Stretch(self.state, ball, frozenset(excused), keeper)
+        self._begin_stretch(sight)
 
     def goal(self, team: Team) -> None:
         """Counts a goal."""
@@ -182,6 +187,12 @@ class Match:
         for robot in robots:
             self.cards.take_out(robot, self.rules.repair_s)
         self.calls.append(Call(self.state, Team.NONE, reason=Reason.PARK))
+
+    def _begin_stretch(self, sight: Sight | None) -> None:
+        excused = misplaced_robots(self.restart, sight, self.ends, self.rules.field) if sight else []
+        ball = sight.ball if sight else self.spot
+        keeper = sight.goalkeeper(self.team.other) if sight else ""
+        self._stretch = Stretch(self.state, ball, frozenset(excused), keeper)
 
     def _next_penalty(self) -> Restart:
         assert self.shootout

@@ -1,6 +1,6 @@
 """Referees the match: calls goals, balls out and fouls, places the ball, shows cards, keeps time and score."""
 
-from fwk import Clock, Component, Config, Logger, Reads, Serves, Writes
+from fwk import Clock, Component, Config, Logger, Reads, Serves, Writes, channel
 from lcmtypes.soccer import (
     ball_placement_t,
     game_event_t,
@@ -19,6 +19,7 @@ from procs.referee.calls import Call
 from procs.referee.names import Names
 from procs.referee.orders import carry_out
 from procs.referee.reasons import OFF_FIELD
+from procs.referee.resumption import resume
 from procs.referee.rules import Rules
 from procs.referee.sight import LEAVES, Sight
 from procs.referee.whistle import Whistle
@@ -47,6 +48,9 @@ class Referee(Component):
     match_events: Reads[match_events_t]
     ground_truth: Reads[ground_truth_t]
     referee_command: Serves[referee_command_t]
+    told_state: Reads[game_state_t] = channel("world/game_state")
+    """Own messages, with which a referee that was restarted goes on; so is `told_history`."""
+    told_history: Reads[match_history_t] = channel("world/match_history")
     game_state: Writes[game_state_t]
     match_history: Writes[match_history_t]
     """Written in the first iteration, when a decision is added, and every 100 ticks."""
@@ -59,7 +63,7 @@ class Referee(Component):
         self._names = Names(self.config.players)
         self._has_grown = False  # the history, since it was written
         self._awaited = Team.NONE
-        self._record(Call(self._whistle.state, self._whistle.team))
+        self._begun = False
 
     def loop(self) -> None:
         whistle = self._whistle
@@ -67,6 +71,8 @@ class Referee(Component):
         passed_s = self.clock.period_s if self._before_us < 0 else self.clock.since_s(self._before_us)
         self._before_us = self.clock.now_us
         sight = self._sight()
+        if not self._begun:
+            self._begin(sight)
         if sight.events or not self.match_events.value.frozen:
             whistle.step(passed_s, sight)
             for call in whistle.calls:
@@ -80,6 +86,17 @@ class Referee(Component):
             placement = self.ball_placement.value
             placement.placement_id, placement.x_m, placement.y_m = placement_id, *whistle.spot
             self.ball_placement.write()
+
+    def _begin(self, sight: Sight) -> None:
+        """Begins the match, or goes on with that which this referee led before it was restarted."""
+        self._begun = True
+        whistle, told, history = self._whistle, self.told_state, self.told_history
+        if told.has_value and resume(whistle, told.value, history.value.events, sight, self._names, self.clock.tick):
+            self.match_history.value.events = list(history.value.events)
+            self._has_grown, self._placed = True, whistle.placements
+            self.log.info(f"goes on, {self._stands()}")
+        else:
+            self._record(Call(whistle.state, whistle.team))
 
     def _sight(self) -> Sight:
         ball, name_of = self.match_events.value, self._names.of_player
@@ -136,9 +153,7 @@ class Referee(Component):
             self.log.info(self._words(call))
 
     def _words(self, call: Call) -> str:
-        whistle = self._whistle
-        score = f"cyan {whistle.score[Team.CYAN]}:{whistle.score[Team.MAGENTA]} magenta"
-        when = f"{whistle.time_in_half_s:.1f} s into half {whistle.half}"
+        when = self._when()
         if call.card:
             return f"{call.card.name.lower().replace('_', ' ')} card for {self._names.namespace(call.robot)}, {when}"
         if call.reason in OFF_FIELD:
@@ -146,7 +161,14 @@ class Referee(Component):
         what = "final whistle" if call.state is State.FROZEN else call.state.words
         whose = f" for {call.team.name.lower()}" if call.team else ""
         why = f" ({', '.join(filter(None, (call.reason, self._names.namespace(call.robot))))})" if call.reason else ""
-        return f"{what}{whose}{why}, {score}, {when}"
+        return f"{what}{whose}{why}, {self._stands()}"
+
+    def _stands(self) -> str:
+        score = self._whistle.score
+        return f"cyan {score[Team.CYAN]}:{score[Team.MAGENTA]} magenta, {self._when()}"
+
+    def _when(self) -> str:
+        return f"{self._whistle.time_in_half_s:.1f} s into half {self._whistle.half}"
 
     def _write_state(self) -> None:
         whistle, game = self._whistle, self.game_state.value

@@ -1,4 +1,4 @@
-"""The history of the match, which is written seldom, reaches a reader that is restarted."""
+"""The history of the match, which is written seldom, reaches a reader and a referee that are restarted."""
 
 from pathlib import Path
 
@@ -42,3 +42,17 @@ def test_restarted_reader_has_the_history_of_the_match(launch: Launch, ports: Po
     seen = [each for each in recording.decoded("world/seen") if each.header.writer == "world/reader#2"]
     assert {tuple(event.goal for event in each.events) for each in seen} == {(False, True, False)}
     assert [each.n for each in recording.decoded("world/match_history")] == [1, 3]
+
+
+def test_restarted_referee_goes_on_with_the_match(launch: Launch, ports: PortBlock, tmp_path: Path) -> None:
+    write_files(tmp_path, FILES)
+    run = Steered(launch("match.yaml", "--speed", "1"), ports)
+    run.fwk("call", "world/referee_command", "name=second_half")
+    run.fwk("call", "world/referee_command", "name=goal", "team=cyan")
+    run.ticks_pass()
+    run.fwk("restart", "world/referee")
+    run.ticks_pass()
+    recording = Recording(run.end())
+    last = recording.decoded("world/game_state")[-1]
+    assert (last.header.writer, last.half, last.score_cyan, last.decisions) == ("world/referee#2", 2, 1, 4)
+    assert [each.n for each in recording.decoded("world/match_history")] == [1, 2, 4, 4]
