@@ -126,10 +126,15 @@ def _bad_input(cause: str) -> typer.Exit:
 def _refusal(plan: Plan, sets: Sequence[str], time_s: float | None) -> str:
     """Returns why the plan's evaluation does not take the settings or the time that were typed, or an empty text."""
     work = cast(Callable[..., Any], find_object(plan.evaluation, plan.folders))
+    module = plan.evaluation.partition(":")[0]
+    if not callable(getattr(import_module(module), "report", None)):
+        return f"{module} has no function 'report', which makes the table; give it 'def report(results, folder) -> str'"
+    if any(text.partition("=")[0] == "seed" for text in sets):
+        return "--set seed changes no run, because each has a seed of --seeds; leave it out"
     if sets and len(signature(work).parameters) < 4:
         cure = "leave out --set, or give it a fourth parameter, 'sets: Sequence[str]'"
         return f"{plan.evaluation} takes no settings; {cure}"
-    if time_s is not None and getattr(import_module(plan.evaluation.partition(":")[0]), "OWN_TIME", False):
+    if time_s is not None and getattr(import_module(module), "OWN_TIME", False):
         return f"{plan.evaluation} plays each run for a time of its own; leave out --time"
     return ""
 

@@ -131,6 +131,18 @@ def test_evaluation_with_a_time_of_its_own_refuses_time(launch: Path, monkeypatc
     assert evaluated(str(launch), "--seeds", "1", "--jobs", "1")[:2] == (0, "1\n")
 
 
+def test_seed_in_an_overridden_setting_is_refused(launch: Path) -> None:
+    code, _, said = evaluated(str(launch), "--seeds", "1", "--set", "seed=5")
+    assert (code, "--set seed changes no run, because each has a seed of --seeds; leave it out" in said) == (2, True)
+
+
+def test_evaluation_without_a_report_is_refused(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(cli_eval_parts, "report")
+    code, _, said = evaluated(str(launch), "--seeds", "1", "--jobs", "1")
+    assert (code, "cli_eval_parts has no function 'report', which makes the table; give it" in said) == (2, True)
+    assert not (launch.parent / "eval-it").exists()
+
+
 @pytest.mark.parametrize("name", ["", " "])
 def test_folder_without_a_name_is_refused(launch: Path, name: str) -> None:
     code, _, said = evaluated(str(launch), "--seeds", "1", "--jobs", "1", "--out", name)
