@@ -115,9 +115,9 @@ class Campaign:
         old = _read(note)
         if old is None:
             _write(note, text)
-        elif _flaw_of(old) and old != text.encode():
+        elif (flaw := _flaw_of(old, _flaw_in_note)) and old != text.encode():
             cure = "remove it if the results beside it are of this launch file and its settings"
-            raise FolderError(f"{note} is damaged: {_flaw_of(old)}; {cure}, or choose another folder")
+            raise FolderError(f"{note} is damaged: {flaw}; {cure}, or choose another folder")
         elif json.loads(old) != json.loads(text) and not self._began_anew(note, text):
             differ = _differing(json.loads(old), json.loads(text))
             raise FolderError(f"{folder} holds another campaign: {differ}; choose another folder")
@@ -228,6 +228,11 @@ class Campaign:
 
     def _file(self, seed: int) -> Path:
         return self._folder / f"seed-{seed}.json"
+
+
+def _flaw_in_note(value: Any) -> str:
+    """Returns why a value is not what is stated about a campaign, or an empty text."""
+    return "" if isinstance(value, dict) else "it is no JSON object"
 
 
 def _differing(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:

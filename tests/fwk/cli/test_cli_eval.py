@@ -199,7 +199,7 @@ def test_damaged_result_whose_run_fails_is_not_reported(launch: Path) -> None:
     assert "error: 1 of 1 runs failed: seed 13: ValueError: an unlucky seed" in said
 
 
-@pytest.mark.parametrize("content", DAMAGES, ids=["empty", "truncated", "says nothing", "garbage", "deep"])
+@pytest.mark.parametrize("content", [*DAMAGES, b"null", b'"x"', b"[1]"])
 def test_damaged_note_of_a_campaign_is_named(launch: Path, content: bytes) -> None:
     words = (str(launch), "--seeds", "1", "--jobs", "1")
     assert evaluated(*words)[0] == 0
