@@ -20,6 +20,7 @@ from fwk.cli.recordings.user_folders import use_folders
 from fwk.model.errors import PlanError
 from fwk.model.plan import Plan
 from fwk.plan.classes import find_object
+from fwk.plan.files.launch_file import FOLDER, INSTALLED
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.what_ran import imported_modules
 from fwk.program import BAD_INPUT, FAILED
@@ -90,7 +91,7 @@ def eval(  # noqa: A001 - the name of the command
     if cause := _refusal(plan, sets or (), time_s):
         raise _bad_input(cause)
     time_s = _RUN_S if time_s is None else time_s
-    about = {"file": plan.file, "time_s": time_s, "by": plan.evaluation, "plan": _digest(plan)}
+    about = {"file": os.path.normpath(plan.file), "time_s": time_s, "by": plan.evaluation, "plan": _digest(plan)}
     work = Evaluation(plan.evaluation, plan.folders, tuple(sets or ()), modules if cluster else {})
     try:
         with _refused_by(folder):
@@ -103,7 +104,7 @@ def eval(  # noqa: A001 - the name of the command
         def executor(runs: int) -> AbstractContextManager[Executor]:
             return executor_of(min(jobs or os.cpu_count() or 1, runs), cluster, limit_s)
 
-        failure = _play(campaign, work, file, time_s, numbers, executor)
+        failure = _play(campaign, work, _file_for_runs(plan, cluster), time_s, numbers, executor)
         results, text = campaign.results(numbers), ""
         if results:
             with _refused_by(folder):
@@ -180,6 +181,12 @@ def _play(
         typer.echo(f"note: {kept} of {len(seeds)} runs have results; the same command plays the others", err=True)
         raise
     return ""
+
+
+def _file_for_runs(plan: Plan, cluster: str) -> str:
+    """Returns the launch file as processes in other folders find it; workers find one that comes with fwk by name."""
+    path = Path(os.path.normpath(plan.file))
+    return path.name if cluster and path.parent == INSTALLED / FOLDER else str(path)
 
 
 @contextmanager

@@ -77,6 +77,12 @@ def test_folder_of_another_campaign_is_refused(launch: Path) -> None:
     assert "eval-it holds another campaign: time_s is 25.0 there, 3.0 here; choose another folder" in said
 
 
+def test_folder_knows_its_launch_file_by_other_paths(launch: Path) -> None:
+    assert evaluated("it.yaml", "--seeds", "1", "--jobs", "1")[0] == 0
+    (launch.parent / "beside").mkdir()
+    assert evaluated("beside/../it.yaml", "--seeds", "1", "--jobs", "1")[:2] == (0, "1\n")
+
+
 def test_folder_without_results_takes_another_campaign(launch: Path) -> None:
     """The only run of a mistaken command failed; the right command needs no other folder."""
     assert evaluated(str(launch), "--seeds", "13", "--jobs", "1", "--time", "0.001")[0] == 1

@@ -6,6 +6,7 @@ import os
 import re
 import socket
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 from itertools import count
 from pathlib import Path
@@ -15,6 +16,7 @@ from unittest.mock import patch
 
 import pytest
 
+from fwk.cli.recordings import evaluate
 from fwk.plan.what_ran import hash_of_module
 from fwk.testing import executors
 from fwk.testing.campaign import Campaign, Evaluation
@@ -111,6 +113,21 @@ def test_worker_keeps_the_code_that_it_used_first(tmp_path: Path, monkeypatch: p
     now = {"cli_eval_changing": hash_of_module("cli_eval_changing")}
     with pytest.raises(CampaignError, match="a worker has other code of cli_eval_changing"):
         Evaluation("cli_eval_changing:measured", modules=now)("it", 1.0, 1)
+
+
+@pytest.mark.parametrize("file", ["it.yaml", "soccer-truth.yaml"])
+def test_launch_file_is_told_as_workers_find_it(launch: Path, monkeypatch: pytest.MonkeyPatch, file: str) -> None:
+    """Workers run in folders of their own, so that a path from the folder of the command would lead nowhere."""
+    told: list[str] = []
+
+    class Workers(ThreadPoolExecutor):
+        def submit(self, work: Any, /, *words: Any, **named: Any) -> Any:
+            told.append(words[0])
+            return super().submit(dict, seed=words[2])
+
+    monkeypatch.setattr(evaluate, "executor_of", lambda *_: Workers(1))
+    evaluated(file, "--seeds", "1", "--cluster", "tcp://it")
+    assert told == [str(launch) if file == "it.yaml" else "soccer-truth.yaml"]
 
 
 @pytest.mark.slow
