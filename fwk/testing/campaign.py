@@ -13,6 +13,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, cast, overload
 
+from fwk.component.log import own_frame
+from fwk.engine.failures import ComponentFailedError
+from fwk.engine.metrics import told
 from fwk.lcm.type_registry import put_first, use_types_of
 from fwk.model.errors import some
 from fwk.plan.classes import find_object
@@ -57,7 +60,7 @@ class Evaluation:
         """Plays a run and returns its measurements.
 
         Raises:
-            CampaignError: this process has other modules.
+            CampaignError: this process has other modules, or the run failed; the text names a component that did.
         """
         for folder in self.folders:
             use_types_of(Path(folder))
@@ -68,7 +71,13 @@ class Evaluation:
             more = f" and {len(other) - 1} more" if len(other) > 1 else ""
             cure = "copy the code to its machine if it has a copy of its own, and restart the worker"
             raise CampaignError(f"a worker has other code of {other[0]}{more}; {cure}")
-        return work(file, time_s, seed, self.sets) if self.sets else work(file, time_s, seed)
+        try:
+            return work(file, time_s, seed, self.sets) if self.sets else work(file, time_s, seed)
+        except CampaignError:
+            raise
+        except Exception as error:  # of any kind; some do not reach another process, alone or as a cause
+            failure = _failure(error)
+        raise CampaignError(failure)
 
 
 class Results(Sequence[Any]):
@@ -254,9 +263,26 @@ def _outcome(future: Future[Any]) -> tuple[str, str]:
         return "", "the connection to the cluster was lost"
     except (CampaignError, TypeError, ValueError, RecursionError) as flaw:  # what JSON does not know
         error = flaw
-    said = " ".join(str(error).split())
-    name = "" if isinstance(error, CampaignError) else type(error).__name__
-    return "", ": ".join(filter(None, (name, f"{said[:_SHOWN]} ..." if len(said) > _SHOWN else said)))
+    if isinstance(error, CampaignError):
+        return "", str(error)
+    return "", ": ".join(filter(None, (type(error).__name__, _short(str(error)))))
+
+
+def _failure(error: Exception) -> str:
+    """Returns an exception of a run with its place, and with the component that raised it if one did.
+
+    The tick is left out, so that runs that fail at the same place have the same cause.
+    """
+    frame, context = own_frame(error), error.__context__
+    place = f" ({frame.filename}:{frame.lineno})" if frame else ""
+    failed = f"{context}".partition(": ")[0] if isinstance(context, ComponentFailedError) else ""
+    return f"{_short(': '.join(filter(None, (failed, told(error)))))}{place}"
+
+
+def _short(text: str) -> str:
+    """Returns a text in one line, and the beginning of a long one."""
+    line = " ".join(text.split())
+    return f"{line[:_SHOWN]} ..." if len(line) > _SHOWN else line
 
 
 def _causes(failures: Mapping[int, str]) -> str:

@@ -1,0 +1,44 @@
+"""`fwk eval` whose components fail: the message names the component, the error and its place."""
+
+import re
+from pathlib import Path
+
+from fwk import Clock, Component
+from fwk.testing import MemorySystem
+from tests.fwk.cli.cli_eval_parts import Idle
+from tests.fwk.cli.cli_eval_tools import LAUNCH, evaluated
+
+
+class UnpicklableError(Exception):
+    """An error that no other process can make again."""
+
+    def __init__(self, first: str, second: str) -> None:
+        super().__init__(f"{first} {second}")
+
+
+class Crash(Component):
+    """Fails in its second iteration."""
+
+    stage = "act"
+    clock: Clock
+
+    def loop(self) -> None:
+        if self.clock.tick == 2:
+            raise UnpicklableError("no", "way")
+
+
+def measured(file: str, time_s: float, seed: int) -> None:
+    """Runs the components, of which one fails."""
+    MemorySystem({"it/well": Idle, "it/crash": Crash}).tick(2)
+
+
+def report(results: object, folder: Path) -> str:
+    """Returns no table."""
+    return ""
+
+
+def test_failed_component_and_its_place_are_named(launch: Path) -> None:
+    launch.write_text(LAUNCH.replace("cli_eval_parts:measured", "test_cli_eval_failing:measured"))
+    code, _, said = evaluated(str(launch), "--seeds", "1..3", "--jobs", "2")
+    cause = r"seeds 1, 2, 3: it/crash: UnpicklableError: no way \(.*/test_cli_eval_failing\.py:\d+\)"
+    assert (code, bool(re.search(f"error: 3 of 3 runs failed: {cause}\n", said))) == (1, True)
