@@ -356,7 +356,8 @@ def _write(file: Path, text: str) -> None:
             os.fsync(opened.fileno())
         partial.replace(file)
     except OSError as error:
-        with suppress(OSError):
-            partial.unlink()
         cure = "make room for it there, or choose another folder"
         raise FolderError(f"{file} cannot be written: {error.strerror}; {cure}") from error
+    finally:  # also after Ctrl-C in the middle
+        with suppress(OSError):
+            partial.unlink()

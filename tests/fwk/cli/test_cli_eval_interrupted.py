@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -53,6 +54,17 @@ def test_ctrl_c_does_not_wait_for_runs_that_have_begun(tmp_path: Path) -> None:
     assert done.stderr.endswith("KeyboardInterrupt\n")
     assert "InvalidStateError" not in done.stderr
     assert not psutil.pid_exists(json.loads((tmp_path / "seed-0.json").read_text()))
+
+
+def test_ctrl_c_while_a_result_is_written_leaves_no_part(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(_: int) -> None:
+        raise KeyboardInterrupt
+
+    campaign = Campaign(tmp_path, {})
+    monkeypatch.setattr("os.fsync", interrupt)
+    with ThreadPoolExecutor(1) as executor, pytest.raises(KeyboardInterrupt):
+        list(campaign.play(lambda *_: [1.0], "it", 1.0, [1], executor))
+    assert [file.name for file in tmp_path.iterdir()] == ["campaign.json"]
 
 
 def test_interrupted_evaluation_says_what_is_left(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
