@@ -5,7 +5,7 @@ import io
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from procs.evaluation.intervals import Interval, difference, never, poisson, wid
 from procs.model.frames import Floats
 
 _REDRAWS = 1000
+_FEW = 10  # fewer events than that tell too little about their number in other pieces
 
 
 def rms(samples: Floats) -> float:
@@ -190,8 +191,8 @@ def rows_of(pieces: Sequence[Samples], measures: Sequence[Measure] = MEASURES, s
     As few pieces redrawn vary less than pieces do, the interval is widened. The interval of events that were never seen
     ends at the rate with which seeing none has a probability of 5 %. Where redrawing gives no width, trials have
     Wilson's interval, as do those that all ended alike, and rates of events, and differences of two, that of Poisson's
-    distribution. A single piece gives an interval of events never seen and of trials that all ended alike; otherwise
-    its limits are NaN.
+    distribution; that of fewer than ten events, or trials of the rarer end, holds theirs at least. A single piece gives
+    an interval of events never seen and of trials that all ended alike; otherwise its limits are NaN.
     """
     rng = np.random.default_rng(seed)
     draws = rng.integers(len(pieces), size=(_REDRAWS, len(pieces)))
@@ -208,17 +209,37 @@ def _interval(measure: Measure, value: float, pieces: Sequence[Samples], draws: 
     samples = [piece[measure.name] for piece in pieces]
     drawn = _redrawn(measure, samples, draws) if len(pieces) > 1 else (np.nan, np.nan)
     even, counted = drawn[0] == drawn[1], sum(not np.isnan(measure.statistic(each)) for each in samples)
-    if measure.statistic is share and (even or value in (0.0, 1.0)):
-        trials = sum(map(len, samples))
-        return wilson(round(value * trials), trials)
-    if measure.statistic in (rate, frequency) and (even or value == 0.0):
-        seen, time = _counted(samples)
-        low, high = poisson(seen, time) if seen else never(time)
-        return low, min(high, measure.possible[1])
-    if measure.rates and even:
+    single = _of_single_events(measure, samples, pieces)
+    if single and (even or single.events == 0):
+        return single.interval
+    if counted < 2 or (measure.rates and even):  # a result of former code has a difference without its rates
+        return np.nan, np.nan
+    low, high = widened(value, drawn, counted, measure.possible)
+    if single and single.events < _FEW:
+        return min(low, single.interval[0]), max(high, single.interval[1])
+    return low, high
+
+
+class _SingleEvents(NamedTuple):
+    """Interval of trials or events as if none depended on another, whatever their pieces."""
+
+    interval: Interval
+    events: float
+    """How many events there were, or trials that ended one way, the rarer one."""
+
+
+def _of_single_events(measure: Measure, samples: Sequence[Floats], pieces: Sequence[Samples]) -> _SingleEvents | None:
+    """Returns the interval of trials, of rates of events, or of a difference of two; None for other measures."""
+    if measure.rates:
         (events, time), (others, _) = (_counted([piece[each] for piece in pieces]) for each in measure.rates)
-        return difference(events, others, time) if time else (np.nan, np.nan)
-    return widened(value, drawn, counted, measure.possible) if counted > 1 else (np.nan, np.nan)
+        return _SingleEvents(difference(events, others, time), events + others or 1.0) if time else None
+    events, time = _counted(samples) if measure.statistic in (share, rate, frequency) else (0.0, 0.0)
+    if not time:
+        return None
+    if measure.statistic is share:
+        return _SingleEvents(wilson(round(events), round(time)), min(events, time - events))
+    low, high = poisson(events, time) if events else never(time)
+    return _SingleEvents((low, min(high, measure.possible[1])), events)
 
 
 def _redrawn(measure: Measure, samples: Sequence[Floats], draws: NDArray[np.int64]) -> Interval:

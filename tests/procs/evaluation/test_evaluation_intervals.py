@@ -117,6 +117,27 @@ def test_pieces_with_equal_scores_have_an_interval(cyan: float, magenta: float, 
     assert math.isnan(row_of(name, [former, former]).low)
 
 
+def test_few_events_have_no_narrower_interval_than_single_ones() -> None:
+    """Redrawn pieces with one event have three at most, as few as would be expected if none had been seen."""
+    quiet: Samples = {"events": np.array([(0.0, 1.0)]), "found": np.zeros(4)}
+    one: Samples = {"events": np.array([(1.0, 1.0)]), "found": np.array((1.0, 0.0, 0.0, 0.0))}
+    events, found = rows_of([one] + [quiet] * 99, [EVENTS, FOUND])
+    assert (events.low, events.high) == pytest.approx((0.0, poisson(1, 100)[1]))
+    assert (found.low, found.high) == pytest.approx((0.0, wilson(1, 400)[1]))
+    (lost,) = rows_of([{"found": 1.0 - each["found"]} for each in [one] + [quiet] * 99], [FOUND])
+    assert (lost.low, lost.high) == pytest.approx((wilson(399, 400)[0], 1.0))
+
+
+def test_interval_of_rare_events_holds_their_rate(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(table, "_REDRAWS", 200)
+    rng, held = np.random.default_rng(1), 0
+    for trial in range(100):
+        pieces = [{"events": np.array([(float(rng.poisson(0.08)), 1.0)])} for _ in range(40)]
+        (row,) = rows_of(pieces, [EVENTS], seed=trial)
+        held += row.low <= 0.08 <= row.high
+    assert held >= 93
+
+
 def test_difference_of_rates_lies_around_them() -> None:
     assert difference(5, 5, 1.0) == pytest.approx((-7.474, 7.474), abs=1e-3)
     low, high = difference(10, 2, 1.0)
