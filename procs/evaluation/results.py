@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from procs.evaluation.beliefs import Samples
-from procs.evaluation.table import MEASURES, Measure, rate, ratio, rms, root_99, root_ratio, share
+from procs.evaluation.table import MEASURES, Measure, frequency, rate, ratio, rms, root_99, root_ratio, share
 from procs.model.frames import Floats
 
 _PAIRS = (rate, ratio, root_ratio)
@@ -52,7 +52,8 @@ def _samples(values: Any, measure: Measure) -> Floats:
     except (ValueError, TypeError, OverflowError) as error:
         kind = "pairs of numbers" if pairs else "numbers"
         raise ValueError(f"'{measure.name}' should be a list of {kind}") from error
-    if measure.statistic is share and not np.isin(samples, (0.0, 1.0)).all():
+    told = samples if measure.statistic is share else samples[~np.isnan(samples)]
+    if (measure.unit == "share" or measure.statistic is frequency) and not np.isin(told, (0.0, 1.0)).all():
         raise ValueError(f"'{measure.name}' should be a list of ones and zeros")
     if measure.statistic in _NOT_NEGATIVE and (samples < 0.0).any():
         raise ValueError(f"'{measure.name}' has a value below zero")

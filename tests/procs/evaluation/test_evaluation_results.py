@@ -8,6 +8,7 @@ import pytest
 from procs.evaluation.results import flaw_in, samples_in
 from procs.evaluation.table import MEASURES
 
+FALSE = "balls that do not exist, a frame"
 NUMBERS, PAIRS = "'ball known' should be a list of numbers", "'pose jumps' should be a list of pairs of numbers"
 
 
@@ -31,6 +32,8 @@ NUMBERS, PAIRS = "'ball known' should be a list of numbers", "'pose jumps' shoul
         ('{"pose jumps": [[1.0]]}', PAIRS),
         ('{"pose jumps": [[[1.0, 2.0]]]}', PAIRS),
         ('{"won by cyan": [2.0]}', "'won by cyan' should be a list of ones and zeros"),
+        ('{"ball known": [1.0, 2.0, null]}', "'ball known' should be a list of ones and zeros"),
+        ('{"balls that do not exist, a frame": [-1e999]}', f"'{FALSE}' should be a list of ones and zeros"),
         ('{"won by cyan": [1e999]}', "'won by cyan' should be a list of ones and zeros"),
         ('{"pose, position": [-4.0]}', "'pose, position' has a value below zero"),
         ('{"shots": [[-1, 2.0]]}', "'shots' has a value below zero"),
