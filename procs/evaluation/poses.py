@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lcmtypes.soccer import pose_t
+from lcmtypes.soccer import pose_t, true_robot_t
 from procs.evaluation.piece import Piece
 from procs.model.frames import Floats
 from procs.model.geometry import wrap_rad
@@ -17,7 +17,7 @@ FOUND_S = 10.0
 """A robot that was carried away has so long to find its place."""
 _WRONG_M, _WRONG_RAD = 1.0, 0.5
 _RIGHT_M, _RIGHT_RAD = 0.3, 0.3
-_CARRIED_M_S = 20.0  # a robot that moves faster was carried
+_CARRIED_M_S, _CARRIED_RAD_S = 20.0, 20.0  # a robot that moves or turns faster was carried
 _STANDS_M_S, _STANDS_RAD_S = 0.05, 0.1  # a robot that moves no faster stands
 _JUMP_M = 0.5  # a believed pose that departs so far from the true motion within a tick has jumped
 
@@ -93,17 +93,16 @@ def pose_samples(piece: Piece, interface: str = "pose", prefix: str = "") -> dic
 
 def _beliefs(piece: Piece, interface: str, robot: str) -> Iterator[_Belief]:
     """Yields the beliefs of a robot in the order of the ticks."""
-    before: tuple[float, float] | None = None
+    before: true_robot_t | None = None
     error_before = (0.0, 0.0)
     told: dict[int, pose_t] = piece.by_robot[interface][robot]
     for tick, pose in sorted(told.items()):
         if tick in piece.truth and tick * piece.period_s >= START_S:
             own = piece.robot(tick, robot)
-            at = (own.x_m, own.y_m)
-            carried = before is not None and math.dist(before, at) > _CARRIED_M_S * piece.period_s
+            carried = before is not None and _is_carried(before, own, piece.period_s)
             error = (pose.x_m - own.x_m, pose.y_m - own.y_m)
             jump_m = math.dist(error, error_before) if before is not None else 0.0
-            before, error_before = at, error
+            before, error_before = own, error
             yield _Belief(
                 tick,
                 bool(pose.localized),
@@ -113,6 +112,13 @@ def _beliefs(piece: Piece, interface: str, robot: str) -> Iterator[_Belief]:
                 carried,
                 math.hypot(own.vx_m_s, own.vy_m_s) <= _STANDS_M_S and abs(own.omega_rad_s) <= _STANDS_RAD_S,
             )
+
+
+def _is_carried(before: true_robot_t, robot: true_robot_t, period_s: float) -> bool:
+    """Returns whether a robot has moved or turned within a tick as no robot can."""
+    way_m = math.dist((before.x_m, before.y_m), (robot.x_m, robot.y_m))
+    turn_rad = abs(wrap_rad(robot.heading_rad - before.heading_rad))
+    return way_m > _CARRIED_M_S * period_s or turn_rad > _CARRIED_RAD_S * period_s
 
 
 def _found_s(beliefs: list[_Belief], period_s: float) -> list[float]:

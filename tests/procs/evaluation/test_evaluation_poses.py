@@ -45,6 +45,20 @@ def test_carried_robot_is_found_once_its_pose_is_right() -> None:
     assert found["pose known"].sum() == 10 + 190
 
 
+def test_robot_that_is_turned_by_hand_was_carried() -> None:
+    made = carried_piece()
+    for tick, truth in made.truth.items():
+        truth.robots = [true_robot_t(name="cyan1", x_m=0.2 if tick >= FIRST + 10 else 0.0)]
+        truth.robots[0].heading_rad = -2.0 if tick >= FIRST + 10 else 2.0
+    told = {tick: believes(0.0) for tick in made.truth}
+    for tick, pose in told.items():
+        pose.heading_rad = -2.0 if tick >= FIRST + 20 else 2.0
+    made.by_robot["pose"] = {"cyan1": told}
+    found = pose_samples(made)
+    assert found["wrong pose believed"][0, 0] == 0, "it could not know at once"
+    assert found["kidnapped, time until found"].tolist() == pytest.approx([0.5])
+
+
 def test_standing_robot_has_rows_of_its_own() -> None:
     made = Piece(0.05)
     for tick in range(FIRST, FIRST + 20):
