@@ -1,6 +1,7 @@
 """Skills as hierarchical state machines: a table of states, which runs and from which drawings are made."""
 
 from collections.abc import Callable, Sequence
+from difflib import get_close_matches
 from typing import Any, ClassVar, NamedTuple
 
 from procs.behaviour.skills.skill import Scene, Skill, Status, Step
@@ -47,6 +48,16 @@ class StateMachine(Skill):
 
     STATES: ClassVar[tuple[State, ...]]
     """States of the highest level; the first one is entered."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Checks the table of a skill when its class is made.
+
+        Raises:
+            ValueError: the table names a state that is not there, or a state has nothing to do.
+        """
+        super().__init_subclass__(**options)
+        if mistake := _mistake_in(cls.__dict__.get("STATES", ())):
+            raise ValueError(f"skill {cls.__module__}.{cls.__qualname__}: {mistake}")
 
     def __init__(self) -> None:
         self._path = _descent(self.STATES[0])
@@ -95,3 +106,36 @@ def _descent(state: State) -> list[State]:
     while path[-1].inside:
         path.append(path[-1].inside[0])
     return path
+
+
+def _mistake_in(states: Sequence[State], parent: State | None = None) -> str:
+    """Returns the first mistake in a level of a table or in the levels inside; empty without one."""
+    names = [state.name for state in states]
+    place = f"in state '{parent.name}'" if parent else "at the highest level"
+    if parent and parent.choice and parent.choice[-1].when is not otherwise:
+        return f"the last condition of the choice of state '{parent.name}' should be 'otherwise', which holds always"
+    ways = [(f"choice of state '{parent.name}'", way.to) for way in parent.choice] if parent else []
+    ways += [(f"exit of state '{state.name}'", way.to) for state in states for way in state.exits]
+    for origin, name in ways:
+        if name not in names:
+            return f"the {origin} leads to '{name}'; the states {place} are {', '.join(_nearest(name, names))}"
+    for state in states:
+        if names.count(state.name) > 1:
+            return f"{names.count(state.name)} states {place} have the name '{state.name}'; each should have its own"
+        if mistake := _mistake_of(state) or _mistake_in(state.inside, state):
+            return mistake
+    return ""
+
+
+def _mistake_of(state: State) -> str:
+    if state.inside and state.act:
+        return f"state '{state.name}' has an act and states inside; it should have one of both"
+    if not (state.inside or state.act or state.status is Status.FAILED):
+        return f"state '{state.name}' has no act and no states inside; only a failed state needs neither"
+    if state.choice and not state.inside:
+        return f"state '{state.name}' has a choice, but no states inside to choose from"
+    return ""
+
+
+def _nearest(name: str, names: Sequence[str]) -> list[str]:
+    return [f"'{each}'" for each in get_close_matches(name, names, len(names), cutoff=0.0)]

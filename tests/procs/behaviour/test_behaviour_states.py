@@ -1,6 +1,7 @@
 """State machines of the skills: how they run, that their tables are sound, and that their drawings say the same."""
 
 import itertools
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -57,6 +58,48 @@ def test_states_inside_are_chosen_anew_and_left_together() -> None:
     assert states == ["ground/open", "ground/shut", "top/shut", "top/open"]
     assert lift.step(SCENE._replace(charged=False)) == Step(status=Status.FAILED, reason="no power")
     assert lift.state == "no power"
+
+
+def acts(_skill: StateMachine, _scene: Scene) -> Step:
+    return Step()
+
+
+def slow(_skill: StateMachine, scene: Scene) -> bool:
+    return scene.speed_m_s < 1
+
+
+def leaf(name: str, *exits: str) -> State:
+    return State(name, acts, tuple(Exit(slow, to) for to in exits))
+
+
+@pytest.mark.parametrize(
+    ("states", "mistake"),
+    [
+        (
+            (leaf("turn", "dizzi"), leaf("dizzy")),
+            "the exit of state 'turn' leads to 'dizzi'; the states at the highest level are 'dizzy', 'turn'",
+        ),
+        (
+            (State("lift", inside=(leaf("open", "end"),)), leaf("end")),
+            "the exit of state 'open' leads to 'end'; the states in state 'lift' are 'open'",
+        ),
+        (
+            (State("lift", inside=(leaf("open"),), choice=(Exit(slow, "shut"), Exit(otherwise, "open"))),),
+            "the choice of state 'lift' leads to 'shut'; the states in state 'lift' are 'open'",
+        ),
+        (
+            (State("lift", inside=(leaf("open"),), choice=(Exit(slow, "open"),)),),
+            "the last condition of the choice of state 'lift' should be 'otherwise', which holds always",
+        ),
+        ((leaf("open"), leaf("open")), "2 states at the highest level have the name 'open'; each should have its own"),
+        ((State("end", status=Status.FINAL),), "state 'end' has no act and no states inside; only a failed state"),
+        ((State("lift", acts, inside=(leaf("open"),)),), "state 'lift' has an act and states inside; it should have"),
+        ((State("open", acts, choice=(Exit(otherwise, "shut"),)),), "state 'open' has a choice, but no states inside"),
+    ],
+)
+def test_table_with_a_mistake_is_refused(states: tuple[State, ...], mistake: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(f"skill {__name__}.Spin: {mistake}")):
+        type("Spin", (StateMachine,), {"STATES": states, "__module__": __name__, "__qualname__": "Spin"})
 
 
 def levels(states: Sequence[State]) -> Iterator[tuple[Sequence[State], State | None]]:
