@@ -3,6 +3,9 @@
 import math
 from typing import Literal
 
+from pydantic import Field as Setting
+from pydantic import ValidationInfo, field_validator
+
 from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Writes, channel
 from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import game_state_t, pass_agreement_t, role_t, skill_command_t, world_model_t
@@ -19,7 +22,7 @@ from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import wrap_rad
 from procs.model.kicker import tells_held
-from procs.model.robot import ABSENT, PLAYERS, ROBOT, Players, RobotModel
+from procs.model.robot import ABSENT, CYAN, MAGENTA, PLAYERS, ROBOT, Players, RobotModel, player_of
 from procs.model.teams import Team, team_number_of_player
 
 _EXPIRES_S = 1.0
@@ -31,7 +34,7 @@ class AgentConfig(Config):
 
     field: Field = Field()
     """Measures of the field."""
-    players: Players = dict(PLAYERS)
+    players: Players = Setting(dict(PLAYERS), validate_default=True)
     """Team and number of each robot."""
     robot: RobotModel = ROBOT
     """Geometry of all robots."""
@@ -47,6 +50,18 @@ class AgentConfig(Config):
     """A target that moved further than this makes a new command."""
     new_heading_rad: float = 0.05
     """A heading that turned further than this makes a new command."""
+
+    @field_validator("players")
+    @classmethod
+    def _own_robot_plays(cls, players: Players, info: ValidationInfo) -> Players:
+        """Refuses players without the own robot, as soon as its name is known."""
+        robot = info.context["channels"]["role"][0].rpartition("/")[0] if info.context else ""
+        if robot and player_of(robot, players) is None:
+            raise ValueError(
+                f"{robot} is not a player; add players.{robot}, such as {{team: {CYAN}, number: 1}}, or name the robot"
+                f" by its team, {CYAN} or {MAGENTA}, and its number, such as {CYAN}1"
+            )
+        return players
 
 
 class Agent(Component):

@@ -1,11 +1,13 @@
 """Robots whose names say neither team nor number play as the setting `players` states."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from fwk.testing import Bench, MemorySystem
+from fwk.model.errors import PlanError
+from fwk.testing import Bench, MemorySystem, launch_plan
 from lcmtypes.soccer import (
     ball_estimate_t,
     drive_target_t,
@@ -35,6 +37,8 @@ PLAYERS = {
 STATED = {name: player.model_dump() for name, player in PLAYERS.items()}
 PARTS = ("agent", "skiller", "navigator")
 FIELD = Field()
+LAUNCH = Path("launch").resolve()
+TRUTH = f"include: [{LAUNCH}/msl-field.yaml, {LAUNCH}/msl-truth.yaml]\nname: names\n"
 
 
 def model_of(mate: str, x_m: float, speed_m_s: float = 0.0) -> world_model_t:
@@ -152,3 +156,15 @@ def test_two_robots_with_other_names_score_for_their_teams() -> None:
         state: game_state_t = system.newest("world/game_state")
         scores.append((state.score_cyan, state.score_magenta))
     assert list(dict.fromkeys(scores)) == [(0, 0), (0, 1), (1, 1)]
+
+
+@pytest.mark.parametrize("robot", ["red1", "anna", "cyan", "cyan0"])
+def test_robot_with_an_agent_has_to_be_a_player(robot: str, tmp_path: Path) -> None:
+    file = tmp_path / "names.yaml"
+    file.write_text(f"{TRUTH}robots: {{{robot}: {{use: msl_robot_truth}}}}\n")
+    with pytest.raises(
+        PlanError, match=rf"{robot}/agent: players: {robot} is not a player; add players\.{robot}, such"
+    ):
+        launch_plan(str(file))
+    file.write_text(f"{file.read_text()}shared: {{players: {{{robot}: {{team: magenta, number: 9}}}}}}\n")
+    launch_plan(str(file))
