@@ -3,6 +3,7 @@
 The drawings are Mermaid, which GitHub and editors show; they stand in a page between the two marks.
 """
 
+import re
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -33,10 +34,13 @@ def redraw(file: Path) -> bool:
     """Writes the drawings between the marks of a page; returns whether the page has changed.
 
     Raises:
-        ValueError: the page lacks a mark.
+        ValueError: the page lacks a mark, or is not text.
         OSError: the page cannot be read or written.
     """
-    text = file.read_text()
+    try:
+        text = file.read_text()
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{file} is not a page: {error}; it should be UTF-8 text") from error
     before, begin, rest = text.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not begin or not end:
@@ -82,7 +86,8 @@ def _choice(state: State, path: str, indent: str) -> Iterator[str]:
 
 
 def _name(path: str) -> str:
-    return path.replace("/", "__").replace(" ", "_")
+    """Returns a name of letters, digits and underscores: Mermaid takes no others, such as hyphens."""
+    return re.sub(r"\W", "_", path.replace("/", "__"))
 
 
 def _words(guard: Guard) -> str:

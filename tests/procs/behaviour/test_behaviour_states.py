@@ -204,3 +204,21 @@ def test_page_without_marks_is_refused(tmp_path: Path) -> None:
     bare.write_text("# Soccer\n")
     with pytest.raises(ValueError, match="has no line"):
         drawings.redraw(bare)
+
+
+def test_page_that_is_not_text_is_refused(tmp_path: Path) -> None:
+    picture = tmp_path / "field.png"
+    picture.write_bytes(b"\x89PNG")
+    with pytest.raises(ValueError, match=r"field\.png is not a page: .*; it should be UTF-8 text"):
+        drawings.redraw(picture)
+
+
+def test_drawing_names_states_as_mermaid_can_read_them() -> None:
+    class Turn(StateMachine):
+        """Turns half."""
+
+        STATES = (State("half-turn (left)", inside=(leaf("go"),), exits=(Exit(slow, "stop"),)), leaf("stop"))
+
+    lines = drawings.drawing(Turn).splitlines()
+    assert lines[1] == '    state "half-turn (left)" as half_turn__left_ {'
+    assert "    half_turn__left_ --> stop: slow" in lines
