@@ -33,7 +33,7 @@ _KICK_TIMEOUT_S = 0.15
 _SEEN_S = 0.5
 """Older percepts do not count."""
 _TOLD_MAX = 100
-"""Number of unknown skills that are told in the log; made-up names do not fill it."""
+"""Number of skills whose mistakes are told in the log, each once for a sender; made-up names do not fill it."""
 
 
 class SkillerConfig(Config):
@@ -79,7 +79,7 @@ class Skiller(Component):
         self._runner = SkillRunner()
         self._request: Request[skill_command_t] | None = None
         self._kick: Call | None = None
-        self._told: set[tuple[str, str]] = set()  # senders with the unknown skills that the log tells
+        self._told: set[tuple[str, str]] = set()  # senders with the skills whose mistakes the log tells
         self.config_changed()
 
     def config_changed(self) -> None:
@@ -112,19 +112,23 @@ class Skiller(Component):
 
     def _begin(self, request: Request[skill_command_t]) -> None:
         command = request.value
-        if command.skill not in SKILLS:
-            reason = _unknown(command.skill)
-            if (asked := (request.sender, command.skill)) not in self._told and len(self._told) < _TOLD_MAX:
-                self._told.add(asked)
-                self.log.warning(f"command {request.sequence} of {request.sender}: {reason}")
-            request.reject(reason)
-        elif reason := mistake(command, self.config.field, self._bodies):
+        known = command.skill in SKILLS
+        reason = mistake(command, self.config.field, self._bodies) if known else _unknown(command.skill)
+        if reason:
+            self._tell(request, f"{command.skill}: {reason}" if known else reason)
             request.reject(reason)
         else:
             if self._request and not self._request.finished:
                 self._request.fail(f"replaced by command {request.sequence} of {request.sender}")
             self._request = request
             self._runner.begin(command.skill)
+
+    def _tell(self, request: Request[skill_command_t], reason: str) -> None:
+        """Logs why a command is refused: agents send it anew in every tick, so once for its sender and its skill."""
+        asked = (request.sender, request.value.skill)
+        if asked not in self._told and len(self._told) < _TOLD_MAX:
+            self._told.add(asked)
+            self.log.warning(f"command {request.sequence} of {request.sender}: {reason}")
 
     def _scene(self) -> Scene:
         command = self._request.value if self._request else skill_command_t()

@@ -207,6 +207,14 @@ def test_unknown_skill_is_logged_once_with_the_nearest_first(skiller: Bench) -> 
     assert all(name in shot for name in SKILLS)
 
 
+def test_impossible_command_is_logged_once_for_its_skill(skiller: Bench) -> None:
+    for skill, x_m in (("goto", 11.5), ("goto", 11.6), ("dribble", 50.0), ("goto", 11.5)):
+        carry_out(skiller, skill=skill, x_m=x_m)
+    goto, dribble = (line.text for line in skiller.logged)
+    assert goto.startswith("command 1 of test/sender: goto: (11.5, 0) is in a goal; at that y_m x_m can be from ")
+    assert dribble.startswith("command 3 of test/sender: dribble: x_m is 50; between the walls a robot's middle can be")
+
+
 def test_made_up_skills_do_not_fill_the_log(skiller: Bench) -> None:
     for number in range(150):
         carry_out(skiller, skill=f"skill {number}")
