@@ -7,6 +7,7 @@ from lcmtypes.soccer import ground_truth_t, true_robot_t
 
 _KEPT_US = 1_200_000  # longer than the longest latency
 _SUDDEN_M_S = 4.0  # within a tick a body is faster than before and after it by this at most; else it was placed
+_SUDDEN_RAD_S = 15.0  # the same of the turning of a robot
 _KICK_M_S = 20.0  # of a ball that is kicked and bounces within a tick
 
 
@@ -48,9 +49,10 @@ def between(earlier: ground_truth_t, later: ground_truth_t, share: float, span_s
     """Returns the world after a share of the way from one message to another, which is `span_s` later."""
     made = ground_truth_t()
     made.header = earlier.header
-    way_m = math.dist((earlier.ball_x_m, earlier.ball_y_m), (later.ball_x_m, later.ball_y_m))
-    before_m_s = math.hypot(earlier.ball_vx_m_s, earlier.ball_vy_m_s)
-    after_m_s = math.hypot(later.ball_vx_m_s, later.ball_vy_m_s)
+    then_m = earlier.ball_x_m, earlier.ball_y_m, earlier.ball_z_m
+    way_m = math.dist(then_m, (later.ball_x_m, later.ball_y_m, later.ball_z_m))
+    before_m_s = math.hypot(earlier.ball_vx_m_s, earlier.ball_vy_m_s, earlier.ball_vz_m_s)
+    after_m_s = math.hypot(later.ball_vx_m_s, later.ball_vy_m_s, later.ball_vz_m_s)
     jumped = not way_m <= max(_KICK_M_S, _fastest_m_s(before_m_s, after_m_s)) * span_s
     for name in ("ball_x_m", "ball_y_m", "ball_z_m", "ball_vx_m_s", "ball_vy_m_s", "ball_vz_m_s"):
         then, now = getattr(earlier, name), getattr(later, name)
@@ -72,7 +74,9 @@ def _robot(earlier: true_robot_t, later: true_robot_t, share: float, span_s: flo
     way_m = math.dist((earlier.x_m, earlier.y_m), (later.x_m, later.y_m))
     turn_rad = later.heading_rad - earlier.heading_rad
     before_m_s, after_m_s = math.hypot(earlier.vx_m_s, earlier.vy_m_s), math.hypot(later.vx_m_s, later.vy_m_s)
-    if not (way_m <= _fastest_m_s(before_m_s, after_m_s) * span_s and math.isfinite(turn_rad)):
+    turn_rad = math.remainder(turn_rad, math.tau) if math.isfinite(turn_rad) else math.inf
+    fastest_rad_s = max(abs(earlier.omega_rad_s), abs(later.omega_rad_s)) + _SUDDEN_RAD_S
+    if not (way_m <= _fastest_m_s(before_m_s, after_m_s) * span_s and abs(turn_rad) <= fastest_rad_s * span_s):
         return later
     made = true_robot_t()
     made.name, made.team, made.number = later.name, later.team, later.number
@@ -81,5 +85,5 @@ def _robot(earlier: true_robot_t, later: true_robot_t, share: float, span_s: flo
     made.vx_m_s = rest * earlier.vx_m_s + share * later.vx_m_s
     made.vy_m_s = rest * earlier.vy_m_s + share * later.vy_m_s
     made.omega_rad_s = rest * earlier.omega_rad_s + share * later.omega_rad_s
-    made.heading_rad = math.remainder(earlier.heading_rad + share * math.remainder(turn_rad, math.tau), math.tau)
+    made.heading_rad = math.remainder(earlier.heading_rad + share * turn_rad, math.tau)
     return made

@@ -38,6 +38,24 @@ def test_what_was_placed_is_not_seen_on_the_way() -> None:
     assert (world.robots[0].x_m, world.ball_x_m) == (3.0, -5.0)
 
 
+def test_robot_turned_by_hand_is_not_seen_on_the_way() -> None:
+    world = past(truth(40_000, 1.0, 0.0, 0.0), truth(80_000, 1.0, 2.5, 0.0)).at(45_000)
+    assert world.robots[0].heading_rad == 2.5
+
+
+def test_ball_lifted_by_hand_is_not_seen_on_the_way() -> None:
+    before, after = truth(40_000, 1.0, 0.0, 0.0), truth(80_000, 1.0, 0.0, 0.0)
+    after.ball_z_m = 3.0
+    assert past(before, after).at(45_000).ball_z_m == 3.0
+
+
+@pytest.mark.parametrize("omega_rad_s", [20.0, -20.0])
+def test_robot_that_spins_is_seen_on_its_way(omega_rad_s: float) -> None:
+    before, after = truth(40_000, 1.0, 0.0, 0.0), truth(80_000, 1.0, 0.04 * omega_rad_s, 0.0)
+    before.robots[0].omega_rad_s = after.robots[0].omega_rad_s = omega_rad_s
+    assert past(before, after).at(60_000).robots[0].heading_rad == pytest.approx(0.02 * omega_rad_s)
+
+
 @pytest.mark.parametrize("span_us", [20_000, 100_000])
 @pytest.mark.parametrize(("vx_m_s", "vy_m_s"), [(15.0, 15.0), (-15.0, 15.0), (24.0, 0.0)])
 def test_fastest_ball_is_seen_on_its_way(vx_m_s: float, vy_m_s: float, span_us: int) -> None:
