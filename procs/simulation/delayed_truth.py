@@ -34,13 +34,16 @@ class DelayedTruth:
     def expose(self, ground_truth: Reads[ground_truth_t], latency_s: float) -> Exposure | None:
         """Takes the fresh messages and returns the world `latency_s` before the newest.
 
-        Returns None without a new message, and while the robot is not on the field.
+        Returns None without a new message, while the robot is not on the field, and for the first `latency_s` of a
+        sensor that starts during a run, because it does not know the world at its exposures.
         """
         if not ground_truth.refreshed:
             return None
         for truth in ground_truth.fresh:
             self._past.add(truth)
         capture_us = ground_truth.header.time_us - round(latency_s * US_PER_S)
+        if not self._past.reaches(capture_us):
+            return None
         truth = self._past.at(capture_us)
         robots = [robot for robot in truth.robots if _on_field(robot)]
         own = next((robot for robot in robots if robot.name == self._robot), None)

@@ -24,6 +24,11 @@ class Past:
         while len(self._kept) > 1 and self._kept[1].header.time_us <= oldest_us:
             self._kept.popleft()
 
+    def reaches(self, time_us: int) -> bool:
+        """Returns whether the world at a time is known; before the first tick of a run it stands as in that tick."""
+        oldest = self._kept[0].header
+        return oldest.time_us <= time_us or oldest.tick <= 1
+
     def at(self, time_us: int) -> ground_truth_t:
         """Returns the world at a time: the oldest known one for times before.
 

@@ -356,3 +356,20 @@ def test_robot_off_the_field_sees_nothing_and_reports_it_once() -> None:
         eyes.iterate()
     assert eyes.port("ball_percept").sent == []
     assert [line.text for line in eyes.logged] == ["no percepts: robot 'cyan7' is not on the field, which has cyan1"]
+
+
+@pytest.mark.parametrize("latency_s", [0.035, 0.1])
+def test_eyes_that_start_in_a_run_see_no_wrong_past(latency_s: float) -> None:
+    """The ball rolls at 6 m/s; the first percept shows its place at the stated exposure."""
+    eyes = Bench(Percepts, name="cyan1/percepts", period_s=0.04, realism="none", latency_s=latency_s)
+    eyes.tick, eyes.time_us = 99, 99 * 40_000
+    for tick in range(100, 106):
+        seen = truth((OWN[0] + 0.24 * (tick - 96), OWN[1]))
+        seen.ball_vx_m_s = 6.0
+        eyes.port("ground_truth").put(seen, header={"tick": tick, "time_us": 40_000 * tick})
+        eyes.iterate()
+    percepts = eyes.port("ball_percept").sent
+    assert len(percepts) == 6 - math.ceil(latency_s / 0.04)
+    for percept in percepts:
+        rolled_m = 0.24 * (percept.capture_us / 40_000 - 96)
+        assert place_of(percept) == pytest.approx((OWN[0] + rolled_m, OWN[1]))
