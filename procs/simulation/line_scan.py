@@ -7,6 +7,7 @@ import numpy as np
 
 from procs.model.algebra import Floats, product
 from procs.model.field import Field, Point
+from procs.vision.mirror import Mirror
 
 _PIECE_M = 0.1
 
@@ -26,6 +27,7 @@ class LineScan:
             around = arc.radius_m * np.column_stack((np.cos(angles), np.sin(angles))) + np.array(arc.centre)
             starts.append(around[:-1])
             ends.append(around[1:])
+        self._width_m = field.line_width_m
         first, last = np.concatenate(starts), np.concatenate(ends)
         self._middles_m, self._spans_m = (first + last) / 2, last - first
 
@@ -36,11 +38,14 @@ class LineScan:
         rays: int,
         rings_m: tuple[float, ...],
         reach_m: float,
+        mirror: Mirror,
         rng: np.random.Generator,
     ) -> Floats:
         """Returns the crossings (n, 2) within reach, robot frame: of rays in equal angles, and of rings.
 
-        A piece that spans half the angle between two rays is met by one of them with a probability of one half.
+        A piece that spans half the angle between two rays is met by one of them with a probability of one half, one
+        that spans the angle three times by three. A ray meets a line that is narrower than a pixel of the mirror's
+        picture with the probability that the middle of a pixel lies on it.
         """
         cosine, sine = math.cos(heading_rad), math.sin(heading_rad)
         to_robot = np.array(((cosine, -sine), (sine, cosine)))
@@ -49,12 +54,18 @@ class LineScan:
         near = (away_m**2).sum(axis=1) < reach_m**2
         at_m, span_m, luck = product(away_m[near], to_robot), product(self._spans_m[near], to_robot), luck[near]
         range_m = np.maximum(np.hypot(at_m[:, 0], at_m[:, 1]), 1e-6)
-        across = np.abs(at_m[:, 0] * span_m[:, 1] - at_m[:, 1] * span_m[:, 0]) / range_m**2  # rad
+        across_m = np.abs(at_m[:, 0] * span_m[:, 1] - at_m[:, 1] * span_m[:, 0]) / range_m
         along_m = np.abs((at_m * span_m).sum(axis=1)) / range_m
-        met = luck < across * rays / math.tau
+        pixel_m, _ = mirror.metres_per_px_each(range_m)
+        length_m = np.hypot(span_m[:, 0], span_m[:, 1])
+        shown = np.minimum(1.0, self._width_m * length_m / np.maximum(across_m * pixel_m, 1e-12))
+        met = np.floor(shown * across_m / range_m * rays / math.tau + luck).astype(np.intp)
         for ring_m in rings_m:
-            met |= np.abs(range_m - ring_m) <= along_m / 2
-        return np.asarray(at_m[met])
+            met += np.abs(range_m - ring_m) <= along_m / 2
+        piece = np.repeat(np.arange(len(met)), met)
+        number = np.arange(len(piece)) - np.repeat(met.cumsum() - met, met)
+        share = (number + 0.5) / met[piece] - 0.5
+        return np.asarray(at_m[piece] + share[:, None] * span_m[piece])
 
 
 @lru_cache(maxsize=4)

@@ -30,6 +30,7 @@ from procs.simulation.percept_errors import PRESETS
 from procs.simulation.sight import blurred, claimed, glimpse_of, hidden, shaken
 from procs.vision.calibration import MirrorConfig, below_mirror
 
+_LINE_PX, _ROBOT_PX = 2.5, 4.0  # picture that the detector needs beyond a line and the near edge of a robot
 _TILT_SHARE = 0.8  # of a tilt by an angle: shift of what is a few metres away, as a part of the mirror's scale
 
 
@@ -89,7 +90,8 @@ class PerceptsConfig(Config):
     ring_distances_m: tuple[PositiveFloat, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
     """Radii of the rings, as the detector of lines has them."""
     reach_m: float = Setting(default=7.0, gt=0.5, le=20.0)
-    """Largest distance of robots and line points; it is less where the mirror shows less."""
+    """Where the detector's rays end; it finds robots and lines of which they show enough before, and none where the
+    mirror shows no ground."""
     ball_reach_m: float = Setting(default=8.0, gt=0.0, le=20.0)
     """Largest distance of a ball; it is less where the mirror shows less."""
     most_points: int = Setting(default=150, ge=1, le=10_000)
@@ -154,7 +156,11 @@ class Percepts(Component):
         self._mirror = self.config.mirror.mirror()
         self._tilt_px = _TILT_SHARE * self._mirror.scale_px * math.radians(self._errors.tilt_sd_deg) * self._tilts
         self._stated = EXPECTED[self.config.realism]
-        self._reach_m = min(self.config.reach_m, self._mirror.reach_m())
+        end_px = min(self._mirror.radius_px(self.config.reach_m), self._mirror.size_px / 2 - 1)
+        self._line_reach_m, edge_m = (self._mirror.distance_m(end_px - spare) for spare in (_LINE_PX, _ROBOT_PX))
+        body_px = self._mirror.radius_px(self.config.robot.radius_m)
+        self._body_m = self._mirror.distance_m(body_px + _LINE_PX)
+        self._robot_reach_m = edge_m + self.config.robot.radius_m
         radius_m = self.config.ball.radius_m
         self._ball_reach_m = min(self.config.ball_reach_m, self._mirror.reach_m(radius_m))
         self._ball_sight = BallSight(self._mirror, radius_m, self._ball_reach_m, self._errors, self._stated.ball_px)
@@ -188,7 +194,7 @@ class Percepts(Component):
 
     def _see_robots(self, robots_m: Floats, teams: list[int], shake_px: tuple[float, float], passed_s: float) -> None:
         errors, config = self._errors, self.config
-        near = np.hypot(robots_m[:, 0], robots_m[:, 1]) <= self._reach_m
+        near = np.hypot(robots_m[:, 0], robots_m[:, 1]) <= self._robot_reach_m
         found_m = robots_m[near]
         known = self._marker_rng.random(len(found_m)) >= errors.team_missed
         luck, noise = self.rng.random(len(found_m)), self.rng.standard_normal((2, len(found_m)))
@@ -200,7 +206,7 @@ class Percepts(Component):
         )[seen]
         colours = np.where(known, np.array(teams, int)[near], obstacle_t.TEAM_UNKNOWN)[seen].tolist()
         if phantom < -math.expm1(-errors.robot_phantoms_1_s * passed_s):
-            range_m, angle_rad = 0.6 + distance * (self._reach_m - 0.6), direction * math.tau
+            range_m, angle_rad = 0.6 + distance * (self._robot_reach_m - 0.6), direction * math.tau
             moved_m = np.vstack((moved_m, range_m * np.array((math.cos(angle_rad), math.sin(angle_rad)))))
             colours.append(obstacle_t.TEAM_UNKNOWN)
         percepts = self.obstacle_percepts.value = obstacle_percepts_t()
@@ -215,8 +221,15 @@ class Percepts(Component):
         errors, config = self._errors, self.config
         place = Point(own.x_m, own.y_m)
         found_m = self._lines.points(
-            place, own.heading_rad, config.rays, config.ring_distances_m, self._reach_m, self.rng
+            place,
+            own.heading_rad,
+            config.rays,
+            config.ring_distances_m,
+            self._line_reach_m,
+            self._mirror,
+            self.rng,
         )
+        found_m = found_m[np.hypot(found_m[:, 0], found_m[:, 1]) >= self._body_m]
         luck, noise = self.rng.random((2, len(found_m))), self.rng.standard_normal((2, len(found_m)))
         found_m[luck[1] < errors.line_phantoms] *= 0.8
         seen = (luck[0] >= errors.line_missed) & (hidden(found_m, robots_m, config.robot.radius_m) <= 0)

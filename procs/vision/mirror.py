@@ -104,6 +104,11 @@ class Mirror:
         """Returns the radius in the picture at which ground at that distance appears, without tilt."""
         return self.scale_px * math.tan(math.atan2(distance_m, self.height_m) / 2)
 
+    def distance_m(self, radius_px: float) -> float:
+        """Returns the distance of the ground that appears at that radius, without tilt; inf from the horizon on."""
+        angle_rad = 2.0 * math.atan(radius_px / self.scale_px)
+        return self.height_m * math.tan(angle_rad) if angle_rad < math.pi / 2 else math.inf
+
     def reach_m(self, plane_m: float = 0.0) -> float:
         """Returns the largest distance at which the picture shows the level plane at height `plane_m`, without tilt."""
         level = self.view_angle_rad >= math.pi / 2

@@ -136,7 +136,12 @@ def test_robot_without_an_entry_plays_by_its_name(six: MemorySystem) -> None:
     assert robots["cyan6"].x_m < 0.0 < robots["magenta6"].x_m, "each begins in its own half"
 
 
-def test_robot_without_an_entry_is_a_mate_by_its_name(six: MemorySystem) -> None:
+def test_robot_without_an_entry_is_a_mate_by_its_name(tmp_path: Path) -> None:
+    """It starts where it sees lines enough to know its place."""
+    file = tmp_path / "six.yaml"
+    file.write_text(SIX)
+    six = system_of(str(file), sets=("world/simulator.starts={cyan6: [-3, 2, 0]}",))
+    six.tick(75)
     model: world_model_t = six.newest("cyan1/world_model")
     assert [(mate.name, mate.number) for mate in model.mates] == [("cyan6", 6)]
     model = six.newest("cyan6/world_model")
