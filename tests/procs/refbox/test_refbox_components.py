@@ -257,12 +257,17 @@ def test_nonsense_of_a_refbox_is_named(refbox: socket.socket) -> None:
     bench.finalize()
 
 
-def test_command_behind_a_flood_is_obeyed(refbox: socket.socket) -> None:
+def led(refbox: socket.socket) -> tuple[MemorySystem, socket.socket]:
+    """Returns a referee that a RefBox alone leads, and the RefBox's side of the connection."""
     components = {"world/refbox": RefBoxClient, "world/referee": Referee, "world/simulator": Simulator}
     settings = {"world/refbox": {"port": refbox.getsockname()[1]}, "world/referee": {"automatic": False}}
     system = MemorySystem(components, settings=settings)
     system.tick()
-    connection, _ = refbox.accept()
+    return system, refbox.accept()[0]
+
+
+def test_command_behind_a_flood_is_obeyed(refbox: socket.socket) -> None:
+    system, connection = led(refbox)
     with connection:
         connection.sendall(b"?\0" * 2000 + say("CORNER", CYAN))
         for _ in range(100):
@@ -276,11 +281,7 @@ def test_command_behind_a_flood_is_obeyed(refbox: socket.socket) -> None:
 
 def test_commands_that_arrive_at_once_are_all_obeyed(refbox: socket.socket) -> None:
     """As many as a station gets that connects late; more than may wait for the referee."""
-    components = {"world/refbox": RefBoxClient, "world/referee": Referee, "world/simulator": Simulator}
-    settings = {"world/refbox": {"port": refbox.getsockname()[1]}, "world/referee": {"automatic": False}}
-    system = MemorySystem(components, settings=settings)
-    system.tick()
-    connection, _ = refbox.accept()
+    system, connection = led(refbox)
     with connection:
         connection.sendall(say("GOAL", CYAN) * 90 + say("GOAL", MAGENTA) * 80)
         for _ in range(100):

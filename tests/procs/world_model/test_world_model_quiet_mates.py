@@ -13,12 +13,12 @@ def places(estimates: list[robot_estimate_t]) -> list[tuple[float, float]]:
     return [(one.x_m, one.y_m) for one in estimates]
 
 
-def watched(mate: Robot) -> tuple[Robot, TeamOnBench]:
-    """Returns a robot that has heard a mate for two seconds, and both together."""
+def watched(mate: Robot, others_m: tuple[Floats, ...] = ()) -> tuple[Robot, TeamOnBench]:
+    """Returns a robot that has heard a mate and seen others for two seconds, and both together."""
     watching = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
     both = TeamOnBench([watching, mate])
     for _ in range(40):
-        both.tick(None, teams=(OWN,))
+        both.tick(None, others_m=others_m, teams=(OWN,))
     return watching, both
 
 
@@ -31,13 +31,12 @@ def watch(robot: Robot, seen_m: list[Floats], teams: tuple[int, ...]) -> None:
 def test_mate_whose_radio_broke_hides_no_opponent() -> None:
     """The mate drives away with a broken radio; an opponent and later the mate are seen where it was not."""
     opponent_m, gone_m = np.array((4.5, 1.0)), np.array((3.0, -1.5))
-    watching, _ = watched(Robot("cyan3", (3.0, 0.0, 1.0), seed=2))
+    watching, _ = watched(Robot("cyan3", (3.0, 0.0, 1.0), seed=2), (opponent_m,))
     for tick in range(80):
         if tick == 40:
-            assert watching.world.mates[0].covariance_m2[0][0] > 0.5  # its last place is old
+            assert watching.world.mates[0].covariance_m2[0][0] > 0.9  # its last place is old
         watch(watching, [opponent_m, gone_m][: 1 + (tick >= 40)], (OTHER, OWN))
-        if tick > 2:
-            assert places(watching.world.opponents) == [pytest.approx((4.5, 1.0), abs=0.2)]
+        assert places(watching.world.opponents) == [pytest.approx((4.5, 1.0), abs=0.2)]
     assert places(watching.world.mates) == [pytest.approx((3.0, -1.5), abs=0.2)]
     assert watching.world.mates[0].covariance_m2[0][0] < 0.01
     assert watching.world.mates[0].age_s == pytest.approx(80 * PERIOD_S, abs=0.15)  # that of its message
