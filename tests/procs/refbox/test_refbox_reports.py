@@ -298,6 +298,7 @@ def test_flood_of_a_station_is_read_in_parts() -> None:
     server.finalize()
 
 
+@pytest.mark.slow
 def test_match_of_the_launch_file_is_reported(refbox: socket.socket) -> None:
     system = system_of("soccer-refbox.yaml", sets=[f"world/refbox.port={refbox.getsockname()[1]}"])
     system.tick(2)

@@ -16,6 +16,8 @@ from procs.simulation.camera import Camera
 from procs.simulation.percepts import Percepts
 from procs.vision.omni_field import OmniField
 
+pytestmark = pytest.mark.slow
+
 FRAMES = 240
 EDGES_M = (0.5, 1.5, 2.5, 3.5, 4.5, 5.5)
 ROBOTS_M = (1.5, 3.0, 4.5, 5.6, 6.3)
