@@ -37,6 +37,7 @@ def ignoring() -> Iterator[subprocess.Popen[str]]:
         process.kill()
 
 
+@pytest.mark.slow
 def test_a_signal_during_the_change_leaves_no_traceback(ignoring: subprocess.Popen[str]) -> None:
     assert ignoring.stdout
     assert ignoring.stdout.readline() == "ready\n"

@@ -186,6 +186,7 @@ def test_errors_grow_with_distance_as_those_of_pictures(what: str, away_m: float
     assert drawn == pytest.approx(seen, rel=0.3)
 
 
+@pytest.mark.slow
 def test_line_points_are_as_many_and_as_good_as_in_pictures() -> None:
     drawn, seen = measured(rendered=False), measured(rendered=True)
     assert drawn["points"] == pytest.approx(seen["points"], rel=0.2)
