@@ -3,7 +3,7 @@
 Sources:
 
 - the ball (`ball_follower`): the robot's own mouth, its own camera, then the cameras of mates;
-- mates: their own messages; a mate that does not know its place is left out;
+- mates: their own messages, and the own camera when these are late; a mate that does not know its place is left out;
 - opponents: obstacles that the robot and its mates see and that are not robots of the team.
 
 While the robot itself does not know its place, only the sightings of its mates count.
@@ -192,7 +192,8 @@ class WorldModel(Component):
         if self.obstacle_percepts.refreshed and counts(age_s):
             self._frames.note(percepts.capture_us or self.clock.now_us)
             next_s = self._frames.next_s
-            own, known, heard = self._own_team, team.first(len(mates)), Places(in_time(mates, now_s))
+            own, known, in_touch = self._own_team, team.first(len(mates)), in_time(mates, now_s)
+            heard = known if len(in_touch) == len(mates) else Places(in_touch)
             seen = strangers(view.obstacles(percepts, age_s, own), known, now_s - age_s, rules)
             self._untold_obstacles = seen
             silent = view.mates(percepts, age_s, own, heard.rows_at(now_s), config.mate_radius_m)

@@ -280,7 +280,7 @@ def test_command_behind_a_flood_is_obeyed(refbox: socket.socket) -> None:
 
 
 def test_commands_that_arrive_at_once_are_all_obeyed(refbox: socket.socket) -> None:
-    """As many as a station gets that connects late; more than may wait for the referee."""
+    """A late station gets so many commands; they are more than may wait for the referee."""
     system, connection = led(refbox)
     with connection:
         connection.sendall(say("GOAL", CYAN) * 90 + say("GOAL", MAGENTA) * 80)

@@ -54,7 +54,7 @@ class Anywhere(Component):
 
 
 class Seen(NamedTuple):
-    """What one path shows."""
+    """Percepts of one path, by distance."""
 
     points: list[float]
     """Points on lines in a frame, by distance between `EDGES_M`, and beyond the last."""

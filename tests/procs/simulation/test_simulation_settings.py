@@ -137,7 +137,7 @@ def test_robot_without_an_entry_plays_by_its_name(six: MemorySystem) -> None:
 
 
 def test_robot_without_an_entry_is_a_mate_by_its_name(tmp_path: Path) -> None:
-    """It starts where it sees lines enough to know its place."""
+    """The robot starts at a place with lines enough around it to be found."""
     file = tmp_path / "six.yaml"
     file.write_text(SIX)
     six = system_of(str(file), sets=("world/simulator.starts={cyan6: [-3, 2, 0]}",))
