@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from lcmtypes.soccer import robot_estimate_t, world_model_t
 from procs.behaviour.bodies import Bodies
 from procs.behaviour.path import Disc
-from procs.behaviour.velocity_obstacles import Mover
+from procs.behaviour.velocity_obstacles import DRIVES_M_S, Mover
 from procs.behaviour.view import Estimate, is_sane
 from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import clamp, plausible
@@ -25,7 +25,6 @@ _UNSURE_M = 0.15  # ... and at most so much more for the deviation of its place
 _OFF_WALL_M = 0.1  # room between a robot at its target and the wall
 _OFF_GOAL_M = 0.5  # beside the mouth of a goal, robots keep before its line, too
 _AT_WALL_M = 0.05  # error of the believed place of a robot at the wall
-_DRIVES_M_S = 0.3  # a slower mate plays the ball or stays at its place, and does not give way
 
 
 def apart_m(bodies: Bodies) -> float:
@@ -117,7 +116,7 @@ def _mover(robot: Estimate, latency_s: float, gives_way: bool) -> Mover:
     return Mover(
         Point(robot.x_m + robot.vx_m_s * latency_s, robot.y_m + robot.vy_m_s * latency_s),
         Point(robot.vx_m_s, robot.vy_m_s),
-        gives_way=gives_way and math.hypot(robot.vx_m_s, robot.vy_m_s) > _DRIVES_M_S,
+        gives_way=gives_way and math.hypot(robot.vx_m_s, robot.vy_m_s) > DRIVES_M_S,
         margin_m=_PASSING_M + _deviation_m(robot),
     )
 

@@ -4,8 +4,10 @@ After P. Fiorini, Z. Shiller, "Motion planning in dynamic environments using vel
 around the wanted one are rated by their difference from it and by the time to the first collision. The way to each
 velocity is that of a robot which accelerates within its limit (J. van den Berg, J. Snape, S. Guy, D. Manocha,
 "Reciprocal collision avoidance with acceleration-velocity obstacles", ICRA 2011). Of two mates one evades: halves of an
-evasion, as in reciprocal velocity obstacles, are too small when one of the two believes something else. A gentle touch
-is allowed, because robots that fight for the ball touch each other.
+evasion, as in reciprocal velocity obstacles, are too small when one of the two believes something else. Any other robot
+may evade as well. Two robots that both turn to the same side, each to pass behind the other, would meet, so a robot
+nearby counts as one that goes on and as one that brakes, and turns to the right cost less than those to the left. A
+gentle touch is allowed, because robots that fight for the ball touch each other.
 """
 
 import math
@@ -30,6 +32,14 @@ _WEIGHT_S = 3.0
 """Cost of a collision of 1 m/s in 1 s, as a difference from the wanted velocity in m/s."""
 _GROWTH_M_S = 0.2
 """Further room for each second until robots meet: velocities are known roughly, and robots change them."""
+_BRAKES_M_S2 = 2.5
+"""Deceleration of another robot that evades as well ..."""
+_EVADES_M = 3.0
+"""... when it is nearer than this."""
+DRIVES_M_S = 0.3
+"""A slower robot plays the ball or stays at its place."""
+_TO_THE_LEFT = 0.3
+"""Cost of a turn to the left, for each m/s across the wanted direction: robots that meet pass on one side."""
 _LEAST_M_S = 1.0
 """Velocities to choose from are at least so fast, so that a robot that stands can evade."""
 _STANDS_M_S = 1e-6
@@ -85,7 +95,9 @@ def safe_velocity(
         return wanted_m_s
     along = wanted_m_s if math.hypot(*wanted_m_s) > _STANDS_M_S else _away(near, place)
     candidates = _candidates(wanted_m_s, now_m_s, along, min(_LEAST_M_S, fastest_m_s))
+    across = (along.x_m * candidates[:, 1] - along.y_m * candidates[:, 0]) / max(_STANDS_M_S, math.hypot(*along))
     costs = np.sqrt(((candidates - wanted_m_s) ** 2).sum(axis=1)) + others.dangers(candidates, change_m_s2)
+    costs += _TO_THE_LEFT * np.maximum(0.0, across)
     # Rounding errors must not decide between equals; the first one turns least.
     return Point(*candidates[int(costs.round(_ALIKE).argmin())].tolist())
 
@@ -104,20 +116,35 @@ def _candidates(wanted_m_s: Point, now_m_s: Point, along: Point, least_m_s: floa
     return np.array([wanted_m_s, *turned, now_m_s, (0.0, 0.0)])
 
 
+def _may_brake(mover: Mover, place: Point) -> bool:
+    """Returns whether the other robot drives nearby and has not agreed to evade."""
+    drives = not mover.gives_way and math.hypot(*mover.velocity_m_s) > DRIVES_M_S
+    return drives and math.dist(mover.place, place) < _EVADES_M
+
+
 class _Others:
-    """The robots nearby on their ways during the next moments; axes: velocity, time, robot."""
+    """The robots nearby on their ways during the next moments; axes: velocity, time, way.
+
+    A robot that may brake has two ways: it goes on as it does, and it brakes to a stop.
+    """
 
     def __init__(self, movers: Sequence[Mover], place: Point, now_m_s: Point, apart_m: float) -> None:
+        braking = [mover for mover in movers if _may_brake(mover, place)]
+        steady, ways = len(movers), [*movers, *braking]
         self._now = np.array(now_m_s)
-        to = np.array([mover.place for mover in movers]) - place
-        velocity = np.array([mover.velocity_m_s for mover in movers])
-        self._yields = np.array([mover.gives_way for mover in movers])
+        to = np.array([mover.place for mover in ways]) - place
+        self._velocity = np.array([mover.velocity_m_s for mover in ways])
+        self._yields = np.array([mover.gives_way for mover in ways])
+        stop_s = np.full(len(ways), math.inf)
+        stop_s[steady:] = np.sqrt((self._velocity[steady:] ** 2).sum(axis=1)) / _BRAKES_M_S2
+        drives_s = np.minimum(_TIMES_S[:, None], stop_s)
+        self._left = 1.0 - drives_s / stop_s  # share of the velocity that is left (time, way)
+        drives_s = drives_s - drives_s**2 / (2 * stop_s)
         away = np.sqrt((to**2).sum(axis=1))
-        wide = apart_m + np.array([mover.margin_m for mover in movers])
+        wide = apart_m + np.array([mover.margin_m for mover in ways])
         apart = np.minimum(wide, np.maximum(apart_m, away - 0.02))
-        self._closing = self._now - velocity
-        self._gap_x = to[:, 0] - self._closing[:, 0] * _TIMES_S[:, None]
-        self._gap_y = to[:, 1] - self._closing[:, 1] * _TIMES_S[:, None]
+        self._gap_x = to[:, 0] + self._velocity[:, 0] * drives_s - self._now[0] * _TIMES_S[:, None]
+        self._gap_y = to[:, 1] + self._velocity[:, 1] * drives_s - self._now[1] * _TIMES_S[:, None]
         grown = np.minimum(apart + _GROWTH_M_S * _TIMES_S[:, None], np.maximum(apart, away - 0.02))
         self._apart_m2 = grown**2
         self._touching = away <= apart
@@ -140,14 +167,15 @@ class _Others:
             hits[:, _REACTED, self._touching] = True
         if not hits.any():
             return np.zeros(len(velocities))
-        first = hits.argmax(axis=1)  # (velocity, robot)
-        row, robot = np.nonzero(hits.any(axis=1))
-        step = first[row, robot]
-        closing_x = self._closing[robot, 0] + change[row, 0] * share[row, step]
-        closing_y = self._closing[robot, 1] + change[row, 1] * share[row, step]
-        x, y = gap_x[row, step, robot], gap_y[row, step, robot]
-        towards = (x * closing_x + y * closing_y) / np.sqrt(np.maximum(away_m2[row, step, robot], 1e-9))
-        time_s = np.where(self._touching[robot], 0.0, _TIMES_S[step])
+        first = hits.argmax(axis=1)  # (velocity, way)
+        row, way = np.nonzero(hits.any(axis=1))
+        step = first[row, way]
+        closing = (
+            self._now + change[row] * share[row, step][:, None] - self._velocity[way] * self._left[step, way][:, None]
+        )
+        x, y = gap_x[row, step, way], gap_y[row, step, way]
+        towards = (x * closing[:, 0] + y * closing[:, 1]) / np.sqrt(np.maximum(away_m2[row, step, way], 1e-9))
+        time_s = np.where(self._touching[way], 0.0, _TIMES_S[step])
         urgency = 1.0 / np.maximum(time_s, _SOONEST_S) - 1.0 / _HORIZON_S
         cost = _WEIGHT_S * np.maximum(0.0, towards - _TOUCH_M_S) * urgency
         worst = np.zeros(len(velocities))

@@ -83,6 +83,29 @@ def test_mates_whose_ways_cross_do_not_collide() -> None:
     assert max(hits) < 1.0
 
 
+def test_robot_does_not_rely_on_passing_behind_another() -> None:
+    """Two robots that both turned to pass behind the other ran into each other at more than 3 m/s."""
+    now = Point(2.0, 0.0)
+    crossing, far = (
+        Mover(Point(*place), Point(0.0, 1.8), gives_way=False, margin_m=0.1) for place in ((1.6, 0.0), (3.2, -1.4))
+    )
+    assert safe_velocity(now, now, REST, [crossing], APART_M, 3.0) != now, "it may brake"
+    assert safe_velocity(now, now, REST, [crossing._replace(gives_way=True)], APART_M, 3.0) == now
+    assert safe_velocity(now, now, REST, [far], APART_M, 3.0) == now
+
+
+@pytest.mark.parametrize("aside_m", [-0.02, 0.0, 0.02])
+def test_robots_that_meet_pass_on_the_same_side(aside_m: float) -> None:
+    for turn_rad in (0.0, 1.0, math.pi):
+        cos, sin = math.cos(turn_rad), math.sin(turn_rad)
+        oncoming = Mover(
+            Point(2.5 * cos - aside_m * sin, 2.5 * sin + aside_m * cos), Point(-2.0 * cos, -2.0 * sin), gives_way=False
+        )
+        wanted = Point(2.0 * cos, 2.0 * sin)
+        safe = safe_velocity(wanted, wanted, REST, [oncoming], APART_M, 3.0)
+        assert safe.y_m * cos - safe.x_m * sin < -0.1, "to the right"
+
+
 def test_room_beside_a_robot_grows_with_its_uncertainty() -> None:
     def passed_m(margin_m: float) -> float:
         return driven(REST, Point(4.5, 0.0), [Mover(Point(2.0, 0.02), REST, gives_way=False, margin_m=margin_m)])[1]
