@@ -56,13 +56,18 @@ def news(
         commands += _half(now.half)
     if now.stopped and not before.stopped:
         commands += [Command("STOP"), *_stopped(now)]
-    elif before.stopped and _piece(now) != _piece(before):
+    elif before.stopped and (_piece(now) != _piece(before) or _commanded(events[before.decisions : now.decisions])):
         commands += _stopped(now)
     return commands + (start if before.stopped else [])
 
 
 def _piece(state: game_state_t) -> tuple[int, int, float, float]:
     return state.state, state.state_team, state.ball_x_m, state.ball_y_m
+
+
+def _commanded(newer: Sequence[game_event_t]) -> bool:
+    """Returns whether a person has commanded a set piece, which may be the one at hand."""
+    return any(event.reason == Reason.BY_HAND for event in newer)
 
 
 def _robots(

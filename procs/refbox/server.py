@@ -2,11 +2,12 @@
 
 import selectors
 import socket
+from itertools import groupby
 
 from pydantic import Field
 
 from fwk import Component, Config, Logger, Reads, channel
-from lcmtypes.soccer import game_state_t, match_history_t
+from lcmtypes.soccer import game_event_t, game_state_t, match_history_t
 from procs.model.robot import PLAYERS, Players
 from procs.refbox.news import news
 from procs.refbox.protocol import PORT, Addresses, Command, Host, encode
@@ -55,6 +56,7 @@ class RefBoxServer(Component):
             OSError: the address cannot be used.
         """
         self._before: game_state_t | None = None
+        self._events: list[game_event_t] = []
         self._stations: list[Station] = []
         family = socket.AF_INET6 if ":" in self.config.host else socket.AF_INET
         self._listening = socket.create_server((self.config.host, self.config.port), family=family, backlog=_BACKLOG)
@@ -67,13 +69,27 @@ class RefBoxServer(Component):
     def loop(self) -> None:
         if not self.game_state.has_value:
             return
-        now = self.game_state.value
         self._hear()
-        events = self.match_history.value.events
-        self._send(news(self._before, now, events, self.config.players), list(self._stations))
-        self._before = now
+        for now, events in self._told():
+            self._send(news(self._before, now, events, self.config.players), list(self._stations))
+            self._before, self._events = now, events
         newcomers = self._admit()
-        self._send([Command("WELCOME"), *news(None, now, events, self.config.players)], newcomers)
+        if self._before is not None:
+            self._send([Command("WELCOME"), *news(None, self._before, self._events, self.config.players)], newcomers)
+
+    def _told(self) -> list[tuple[game_state_t, list[game_event_t]]]:
+        """Returns the states since the last iteration with their histories: one of each tick, and of each command."""
+        states, histories = self.game_state.fresh, self.match_history.fresh
+        if self._before is None:
+            return [(self.game_state.value, self.match_history.value.events)]
+        told, events = [], self._events
+        for tick, of_tick in groupby(states, lambda state: state.header.tick):
+            several = list(of_tick)
+            written = [history.events for history in histories if history.header.tick == tick][-len(several) :]
+            for number, state in enumerate(several, len(written) - len(several)):
+                events = written[number] if number >= 0 else events  # the first state of a tick may add nothing
+                told.append((state, events))
+        return told
 
     def finalize(self) -> None:
         """Closes all connections."""

@@ -53,7 +53,7 @@ class Referee(Component):
     told_history: Reads[match_history_t] = channel("world/match_history")
     game_state: Writes[game_state_t]
     match_history: Writes[match_history_t]
-    """Written in the first iteration, when a decision is added, and every 100 ticks."""
+    """Written in the first iteration, when a decision is added, with each command, and every 100 ticks."""
     ball_placement: Writes[ball_placement_t]
 
     def init(self) -> None:
@@ -78,9 +78,9 @@ class Referee(Component):
             for call in whistle.calls:
                 self._record(call)
             self._tell_awaited(sight)
-        self._obey(sight)
+        self._write_history(due=self.clock.tick % _REPEATED_TICKS == 1)
         self._write_state()
-        self._write_history()
+        self._obey(sight)
         if whistle.placements != self._placed:
             self._placed = placement_id = whistle.placements
             placement = self.ball_placement.value
@@ -119,6 +119,7 @@ class Referee(Component):
         return bool(name_of(event.robot) and (name_of(event.other) or event.kind != Kind.COLLISION))
 
     def _obey(self, sight: Sight) -> None:
+        """Carries the commands of a tick out; each is followed by the history and the state that it has led to."""
         for command in self.referee_command:
             asked, self._whistle.calls = command.value, []
             refused = carry_out(self._whistle, sight, asked.name, asked.team, asked.robot, self._names)
@@ -129,6 +130,8 @@ class Referee(Component):
                 self.match_history.value.events = []
             for call in self._whistle.calls:
                 self._record(call)
+            self._write_history(due=True)
+            self._write_state()
             command.done()
 
     def _tell_awaited(self, sight: Sight) -> None:
@@ -181,8 +184,8 @@ class Referee(Component):
         game.decisions = len(self.match_history.value.events)
         self.game_state.write()
 
-    def _write_history(self) -> None:
-        if self._has_grown or self.clock.tick % _REPEATED_TICKS == 1:
+    def _write_history(self, due: bool) -> None:
+        if self._has_grown or due:
             self._has_grown = False
             self.match_history.write()
 
