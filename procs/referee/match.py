@@ -92,14 +92,6 @@ class Match:
         self.interrupt(self._next_penalty() if self.shootout else restarts.kick_off(beginner), reason)
         self._begun = False
 
-    def resume(self, half: int, restart: Restart, stopped: bool, placements: int, sight: Sight) -> None:
-        """Goes on in the middle of a half; `placements` is the number of the newest placement."""
-        self.half, self.ends = half, halves.ends_of(half, self.rules)
-        self._ball.spot, self._ball.number = restart.spot, placements
-        self.started = self._begun = not stopped
-        self._enter(restart.state, restart.team, stopped)
-        self._begin_stretch(sight)
-
     def kicks_off(self, half: int) -> Team:
         """Returns the team that was given the kick-off of a half that has not begun; NONE without one."""
         prepared = half == self.half and self.state is State.KICK_OFF and not self._begun

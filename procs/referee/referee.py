@@ -10,16 +10,17 @@ from lcmtypes.soccer import (
     match_events_t,
     match_history_t,
     referee_command_t,
+    referee_memory_t,
 )
 from procs.model.events import Event, Kind
 from procs.model.field import Point
 from procs.model.game_states import State
 from procs.model.teams import Team
 from procs.referee.calls import Call
+from procs.referee.memory import recall, written
 from procs.referee.names import Names
 from procs.referee.orders import carry_out
 from procs.referee.reasons import OFF_FIELD
-from procs.referee.resumption import resume
 from procs.referee.rules import Rules
 from procs.referee.sight import LEAVES, Sight
 from procs.referee.whistle import Whistle
@@ -48,13 +49,14 @@ class Referee(Component):
     match_events: Reads[match_events_t]
     ground_truth: Reads[ground_truth_t]
     referee_command: Serves[referee_command_t]
-    told_state: Reads[game_state_t] = channel("world/game_state")
+    told_memory: Reads[referee_memory_t] = channel("world/referee_memory")
     """Own messages, with which a referee that was restarted goes on; so is `told_history`."""
     told_history: Reads[match_history_t] = channel("world/match_history")
     game_state: Writes[game_state_t]
     match_history: Writes[match_history_t]
     """Written in the first iteration, when a decision is added, with each command, and every 100 ticks."""
     ball_placement: Writes[ball_placement_t]
+    referee_memory: Writes[referee_memory_t]
 
     def init(self) -> None:
         self._whistle = Whistle(self.config)
@@ -72,7 +74,7 @@ class Referee(Component):
         self._before_us = self.clock.now_us
         sight = self._sight()
         if not self._begun:
-            self._begin(sight)
+            self._begin()
         if sight.events or not self.match_events.value.frozen:
             whistle.step(passed_s, sight)
             for call in whistle.calls:
@@ -86,17 +88,24 @@ class Referee(Component):
             placement = self.ball_placement.value
             placement.placement_id, placement.x_m, placement.y_m = placement_id, *whistle.spot
             self.ball_placement.write()
+        self.referee_memory.value.text = written(whistle)
+        self.referee_memory.write()
 
-    def _begin(self, sight: Sight) -> None:
+    def _begin(self) -> None:
         """Begins the match, or goes on with that which this referee led before it was restarted."""
         self._begun = True
-        whistle, told, history = self._whistle, self.told_state, self.told_history
-        if told.has_value and resume(whistle, told.value, history.value.events, sight, self._names, self.clock.tick):
-            self.match_history.value.events = list(history.value.events)
-            self._has_grown, self._placed = True, whistle.placements
-            self.log.info(f"goes on, {self._stands()}")
-        else:
-            self._record(Call(whistle.state, whistle.team))
+        whistle = self._whistle
+        if self.told_memory.has_value:
+            try:
+                recall(whistle, self.told_memory.value.text)
+            except ValueError as error:
+                self.log.warning(f"the match begins anew; memory of the referee before: {error}")
+            else:
+                self.match_history.value.events = self.told_history.value.events
+                self._has_grown, self._placed = True, whistle.placements
+                self.log.info(f"goes on, {self._stands()}")
+                return
+        self._record(Call(whistle.state, whistle.team))
 
     def _sight(self) -> Sight:
         ball, name_of = self.match_events.value, self._names.of_player

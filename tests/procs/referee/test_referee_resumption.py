@@ -1,14 +1,18 @@
 """A referee that was restarted goes on with the match that its own messages state."""
 
-import math
 from typing import Any
 
 import pytest
 
 from fwk.testing import Bench
 from lcmtypes.soccer import game_event_t, game_state_t, match_history_t, true_robot_t
+from procs.model.field import Point
 from procs.model.game_states import State
+from procs.referee.cards import Card
+from procs.referee.memory import recall
 from procs.referee.referee import Referee
+from procs.referee.rules import Rules
+from procs.referee.whistle import Whistle
 
 ROBOTS = [f"{team}{number}" for team in ("cyan", "magenta") for number in (1, 2, 3)]
 
@@ -36,13 +40,26 @@ class Led:
 
     def restart(self) -> None:
         """Puts a new referee in the place of this one."""
-        told, history, tick = self.state, self.bench.port("match_history").sent[-1], self.bench.tick
+        memory, history = self.bench.port("referee_memory").sent[-1], self.bench.port("match_history").sent[-1]
+        tick = self.bench.tick
         self.bench = Bench(Referee, "world/referee", **self.rules)
         self.bench.tick = tick
-        self.bench.port("told_state").put(told)
+        self.bench.port("told_memory").put(memory)
         self.bench.port("told_history").put(history)
         self.bench.port("match_events").put(frozen=True)
         self.bench.iterate()
+
+    def go_on(self, time_s: float) -> None:
+        """Lets time pass."""
+        for _ in range(round(time_s / 0.05)):
+            self.bench.port("match_events").put(ball_x_m=self.state.ball_x_m, ball_y_m=self.state.ball_y_m)
+            self.bench.iterate()
+
+    @property
+    def whistle(self) -> Whistle:
+        """The referee's state machine."""
+        machine: Whistle = self.bench.component._whistle
+        return machine
 
     @property
     def state(self) -> game_state_t:
@@ -122,25 +139,94 @@ def test_deciding_penalties_go_on_after_a_restart(restarts: bool) -> None:
 
 
 @pytest.mark.parametrize(
-    "wrong",
+    "text",
     [
-        {"state": 99},
-        {"state_team": 3},
-        {"half": 0},
-        {"half": 6},
-        {"score_cyan": -1},
-        {"time_in_half_s": math.nan},
-        {"ball_x_m": math.inf},
-        {"time_in_state_s": -1.0},
+        "",
+        "{",
+        "[]",
+        "null",
+        '{"half": 2}',
+        '{"state": {"State": 99}}',
+        '{"state": {"Nothing": 1}}',
+        '{"score": {"dict": [{"tuple": [1]}]}}',
+        '{"_stretch": {"Touches": {"last": "cyan1"}}}',
+        "[" * 100_000,
     ],
 )
-def test_impossible_state_begins_the_match_anew(wrong: dict[str, float]) -> None:
+def test_unreadable_memory_begins_the_match_anew(text: str) -> None:
     bench = Bench(Referee, "world/referee")
-    told = game_state_t(state=game_state_t.PLAY, half=2, score_cyan=3)
-    for name, value in wrong.items():
-        setattr(told, name, value)
-    bench.port("told_state").put(told)
+    bench.port("told_memory").put(text=text)
     bench.port("told_history").put(match_history_t(events=[game_event_t(team=9, half=5, goal=True)]))
     bench.iterate()
     now = bench.port("game_state").sent[-1]
     assert (now.state, now.half, now.score_cyan, now.decisions) == (game_state_t.KICK_OFF, 1, 0, 1)
+    assert any(line.text.startswith("the match begins anew; memory of the referee before: ") for line in bench.logged)
+
+
+def test_memory_of_another_version_is_named() -> None:
+    led = Led()
+    text = led.bench.port("referee_memory").sent[-1].text.replace('"released"', '"let_go"')
+    with pytest.raises(ValueError, match="Stretch has or lacks let_go, released, as in another version"):
+        recall(Whistle(Rules()), text)
+
+
+def test_game_that_a_person_stopped_stays_stopped() -> None:
+    led = Led(automatic=True, stoppage_s=0.1, kick_off_stoppage_s=0.1, positions_s=0.1, ends_s=0.1)
+    led.ask("freekick cyan", "stop")
+    led.restart()
+    led.go_on(2.0)
+    assert led.stands[:3] == (State.FREE_KICK, game_state_t.TEAM_CYAN, True)
+    led.ask("start")
+    assert led.stands[:3] == (State.FREE_KICK, game_state_t.TEAM_CYAN, False)
+
+
+def test_break_that_a_person_holds_goes_on() -> None:
+    led = Led(automatic=True, half_time_s=0.5)
+    led.ask("half_time", "stop")
+    led.restart()
+    led.go_on(2.0)
+    assert State(led.state.state) is State.HALF_TIME
+
+
+@pytest.mark.parametrize("restarts", [True, False])
+def test_penalty_goal_taken_back_does_not_decide(restarts: bool) -> None:
+    led = Led(automatic=True, penalties=1)
+    led.ask("penalties", "goal cyan", "subgoal cyan", "stop")
+    if restarts:
+        led.restart()
+    led.ask("start", "penalty cyan")  # magenta misses, too: 0:0
+    assert (State(led.state.state), led.state.state_team) == (State.PENALTY, game_state_t.TEAM_CYAN)
+
+
+@pytest.mark.parametrize("restarts", [True, False])
+def test_fouls_without_a_card_are_remembered(restarts: bool) -> None:
+    led = Led(automatic=True)
+    for _ in range(2):
+        led.whistle.cards.foul("cyan2", led.whistle.rules)
+    led.go_on(0.05)
+    if restarts:
+        led.restart()
+    assert led.whistle.cards.foul("cyan2", led.whistle.rules) is Card.YELLOW, "the third foul"
+
+
+def test_time_beside_the_field_goes_on_over_the_halves() -> None:
+    led = Led(double_yellow_s=5.0)
+    led.ask("start", "double_yellow cyan3")
+    led.go_on(2.0)
+    led.ask("half_time", "second_half", "start")
+    led.restart()
+    led.go_on(2.0)
+    assert led.state.sent_off == ["cyan3"]
+    led.go_on(1.0)
+    assert led.state.sent_off == []
+
+
+def test_place_where_play_was_stopped_is_remembered() -> None:
+    led = Led()
+    led.ask("start")
+    led.bench.port("match_events").put(ball_x_m=3.0, ball_y_m=-2.0)
+    led.bench.port("referee_command").put(name="corner", team="cyan")
+    led.bench.iterate()
+    left_at = led.whistle.restart_place(Point(0.0, 0.0))
+    led.restart()
+    assert led.whistle.restart_place(Point(0.0, 0.0)) == left_at != Point(0.0, 0.0)

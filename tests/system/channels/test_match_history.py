@@ -1,9 +1,11 @@
 """The history of the match, which is written seldom, reaches a reader and a referee that are restarted."""
 
+import json
 from pathlib import Path
 
 import pytest
 
+from lcmtypes.soccer import game_state_t
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, write_files
@@ -11,6 +13,7 @@ from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
 
+PENALTY, MAGENTA = game_state_t.PENALTY, game_state_t.TEAM_MAGENTA
 FIELD = Path(__file__).parents[3] / "launch" / "msl-field.yaml"
 FILES = {
     "match.yaml": f"include: {FIELD}\nname: match\ncomponents: {{world/reader: {{use: 'reader:Reader'}}}}\n",
@@ -56,3 +59,25 @@ def test_restarted_referee_goes_on_with_the_match(launch: Launch, ports: PortBlo
     last = recording.decoded("world/game_state")[-1]
     assert (last.header.writer, last.half, last.score_cyan, last.decisions) == ("world/referee#2", 2, 1, 4)
     assert [each.n for each in recording.decoded("world/match_history")] == [1, 2, 4, 4]
+
+
+def test_game_stopped_by_hand_stays_so_after_a_restart(launch: Launch, ports: PortBlock, tmp_path: Path) -> None:
+    write_files(tmp_path, FILES)
+    run = Steered(launch("match.yaml", "--speed", "20", "--set", "world/referee.kick_off_stoppage_s=3"), ports)
+    run.fwk("call", "world/referee_command", "name=penalties")
+    for name in ("goal", "subgoal"):
+        run.fwk("call", "world/referee_command", f"name={name}", "team=cyan")
+    run.fwk("call", "world/referee_command", "name=stop")
+    run.fwk("restart", "world/referee")
+    run.ticks_pass(600)
+    recording = Recording(run.end())
+    states, memories = recording.decoded("world/game_state"), recording.decoded("world/referee_memory")
+    after = [each for each in states if each.header.writer == "world/referee#2"]
+    assert len(after) > 400
+    assert all(each.stopped and each.state == PENALTY and each.state_team == MAGENTA for each in after)
+    before, following = (
+        [json.loads(each.text) for each in memories if each.header.writer == f"world/referee{again}"]
+        for again in ("", "#2")
+    )
+    assert following[0]["shootout"] == before[-1]["shootout"]
+    assert '"goals": {"dict": [{"tuple": [{"Team": 1}, 0]}' in memories[-1].text
