@@ -117,7 +117,8 @@ def _is_new_match(before: game_state_t, now: game_state_t, events: Sequence[game
     if now.decisions < before.decisions or any(event.reason == Reason.RESET for event in newer):
         return True
     went_back = now.half == 1 and (before.half > 1 or now.time_in_half_s < before.time_in_half_s)
-    return went_back and all(event.goal or event.card or event.reason in OFF_FIELD for event in newer)
+    no_whistles = {*OFF_FIELD, Reason.SUBGOAL}
+    return went_back and all(event.goal or event.card or event.reason in no_whistles for event in newer)
 
 
 def _begins_again(before: game_state_t, now: game_state_t) -> bool:
@@ -155,7 +156,9 @@ def _scores(before: game_state_t, now: game_state_t) -> list[Command]:
 
 def _until_penalty(now: game_state_t, events: Sequence[game_event_t]) -> list[Command]:
     """Returns what leads to the deciding penalty at hand: a drawn overtime, its end, and the penalties scored."""
-    scored = Counter(event.team for event in events[: now.decisions] if event.goal and event.half == halves.PENALTIES)
+    penalties = [event for event in events[: now.decisions] if event.half == halves.PENALTIES]
+    scored = Counter(event.team for event in penalties if event.goal)
+    scored.subtract(event.team for event in penalties if event.reason == Reason.SUBGOAL)
     drawn = game_state_t()
     before = [getattr(now, f"score_{name}") - scored[team] for team, name in TEAMS.items()]
     drawn.score_cyan = drawn.score_magenta = max(0, min(before))

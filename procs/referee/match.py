@@ -150,6 +150,13 @@ class Match:
         self.score[team] += 1
         self.calls.append(Call(State.KICK_OFF, team, goal=True))
 
+    def take_back(self, team: Team) -> None:
+        """Takes the newest goal of a team back, which has one."""
+        self.score[team] -= 1
+        self.calls.append(Call(self.state, team, reason=Reason.SUBGOAL))
+        if self.shootout:
+            self.shootout.take_back(team)
+
     def end_penalty(self, scored: bool) -> None:
         """Counts the deciding penalty at hand, and goes on with the next one; ends a match that is decided."""
         assert self.shootout

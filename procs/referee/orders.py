@@ -118,9 +118,7 @@ def _goal(match: Match, team: Team, more: bool) -> str:
     elif match.score[team] == 0:
         return f"{team.name.lower()} has no goal to take back"
     else:
-        match.score[team] -= 1
-        if match.shootout:
-            match.shootout.take_back(team)
+        match.take_back(team)
     return ""
 
 

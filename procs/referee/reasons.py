@@ -27,6 +27,8 @@ class Reason(StrEnum):
     NOT_FREE = "the ball of the set piece did not roll freely"
     NO_PASS = "no pass since the ball was won in the own half"
     BY_HAND = "by hand"
+    SUBGOAL = "subgoal"
+    """A goal was taken back."""
     REPAIR = "repair"
     SUBSTITUTION = "substitution"
     PARK = "park"

@@ -20,7 +20,7 @@ from procs.referee.calls import Call
 from procs.referee.memory import recall, written
 from procs.referee.names import Names
 from procs.referee.orders import carry_out
-from procs.referee.reasons import OFF_FIELD
+from procs.referee.reasons import OFF_FIELD, Reason
 from procs.referee.rules import Rules
 from procs.referee.sight import LEAVES, Sight
 from procs.referee.whistle import Whistle
@@ -168,6 +168,8 @@ class Referee(Component):
         when = self._when()
         if call.card:
             return f"{call.card.name.lower().replace('_', ' ')} card for {self._names.namespace(call.robot)}, {when}"
+        if call.reason is Reason.SUBGOAL:
+            return f"goal of {call.team.name.lower()} taken back, {self._stands()}"
         if call.reason in OFF_FIELD:
             return f"{call.reason}{f' of {self._names.namespace(call.robot)}' if call.robot else ''}, {when}"
         what = "final whistle" if call.state is State.FROZEN else call.state.words

@@ -8,7 +8,7 @@ from lcmtypes.soccer import game_event_t, game_state_t, match_history_t
 from procs.model.game_states import State
 from procs.model.geometry import plausible
 from procs.model.teams import Ends
-from procs.referee.reasons import OFF_FIELD
+from procs.referee.reasons import OFF_FIELD, Reason
 from procs.view.field_drawing import field_drawing
 from procs.view.measures import MEASURES, field_in
 
@@ -82,12 +82,25 @@ def _events(history: match_history_t, half: int) -> list[str]:
     """Returns the lines about goals, whistles and cards; `half` is that of the newest state."""
     goals = [
         f"{play_time(event.time_in_half_s)}{f' of half {event.half}' if half > 1 else ''} {TEAMS[event.team]}"
-        for event in history.events
-        if event.goal and event.team in TEAMS
+        for event in _counting(history)
+        if event.team in TEAMS
     ]
-    calls = [event for event in history.events if not event.goal and not event.card and event.reason not in OFF_FIELD]
+    others = {*OFF_FIELD, Reason.SUBGOAL}
+    calls = [event for event in history.events if not event.goal and not event.card and event.reason not in others]
     whistles = Counter(STATES.get(event.state, f"state {event.state}") for event in calls)
     counted = [f"{name} {count}" for name, count in sorted(whistles.items(), key=lambda item: (-item[1], item[0]))]
     cards = [f"{CARDS[event.card]} {event.robot}" for event in history.events if event.card in CARDS]
     lists = (("goals", goals), ("whistles", counted), ("cards", cards))
     return [f"{name}: {', '.join(items)}" for name, items in lists if items]
+
+
+def _counting(history: match_history_t) -> list[game_event_t]:
+    """Returns the goals that count: `subgoal` has taken the newest one of its team back."""
+    goals: list[game_event_t] = []
+    for event in history.events:
+        if event.goal:
+            goals.append(event)
+        elif event.reason == Reason.SUBGOAL:
+            taken = next((goal for goal in reversed(goals) if goal.team == event.team), None)
+            goals = [goal for goal in goals if goal is not taken]
+    return goals

@@ -252,3 +252,11 @@ def test_newcomer_during_penalties_gets_a_corrected_score() -> None:
     told = news(None, state(game_state_t.PENALTY, 2, half=5, score_cyan=0, score_magenta=1, decisions=1), [goal])
     assert [command.name for command in told if command.team == "magenta"] == ["PENALTY", "GOAL", "PENALTY"]
     assert not any(command.team == "cyan" for command in told)
+
+
+def test_deciding_goal_taken_back_is_not_told_as_scored() -> None:
+    goal = game_event_t(goal=True, team=game_state_t.TEAM_CYAN, half=5)
+    taken_back = game_event_t(reason=Reason.SUBGOAL, team=game_state_t.TEAM_CYAN, half=5)
+    now = state(game_state_t.PENALTY, 2, half=5, score_cyan=2, score_magenta=2, decisions=2)
+    told = [command.name for command in news(None, now, [goal, taken_back])]
+    assert told == ["SECOND_HALF_OVERTIME", *["GOAL"] * 4, "STOP", "END_GAME", "PENALTY"]

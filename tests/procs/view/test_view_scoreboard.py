@@ -95,3 +95,12 @@ def test_summary_lists_the_goals_and_counts_the_whistles() -> None:
 def test_summary_lists_the_cards() -> None:
     event = game_event_t(card=game_event_t.YELLOW, robot="cyan3", team=game_state_t.TEAM_CYAN, half=1)
     assert summary_of(state(), event)[2:] == ["cards: yellow cyan3"]
+
+
+def test_goal_taken_back_is_not_listed() -> None:
+    events = [
+        game_event_t(goal=True, team=game_state_t.TEAM_CYAN, half=1, time_in_half_s=10.0),
+        game_event_t(goal=True, team=game_state_t.TEAM_MAGENTA, half=1, time_in_half_s=20.0),
+        game_event_t(reason="subgoal", team=game_state_t.TEAM_CYAN, half=1, time_in_half_s=30.0),
+    ]
+    assert summary_of(state(score_magenta=1), *events)[2:] == ["goals: 00:20 magenta"]
