@@ -153,7 +153,7 @@ class World:
         if not self._put_ball(Point(x_m, y_m), self._middles()):
             return False
         self.last_touch = ""
-        self._judge.ball_in_field = self._is_in_field(Point(*self.ball.body.position))
+        self._judge.put_down(*self.ball.body.position)
         return True
 
     def throw_ball(self, height_m: float, velocity_m_s: tuple[float, float, float]) -> None:
