@@ -5,11 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from procs.model.geometry import clamp
 from procs.model.robot import RobotModel
 from procs.simulation.physics.bodies import State
 from procs.simulation.physics.delay import DelayLine
 from procs.simulation.physics.mouth import Mouth
-from procs.simulation.physics.realism import Noise
+from procs.simulation.physics.realism import Noise, factor
 from procs.simulation.physics.settings import KickerSettings
 
 
@@ -107,6 +108,7 @@ class Kicker:
         self._work_j += self.mouth.ball_mass_kg * (speed_m_s / math.cos(elevation_rad)) ** 2 / 2
         if not self.mouth.holds_ball:
             return None
-        speed_m_s *= 1 + self._noise.kick_speed_sd * speed_error
+        speed_m_s *= factor(self._noise.kick_speed_sd, speed_error)
         error_rad = math.radians(self._noise.kick_direction_sd_deg) * direction_error
+        error_rad = clamp(error_rad, -math.pi / 2, math.pi / 2)
         return Push(self.mouth.kick(speed_m_s, error_rad), kicked=True, lift_m_s=speed_m_s * math.tan(elevation_rad))

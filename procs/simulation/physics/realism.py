@@ -8,6 +8,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
+from procs.model.geometry import clamp
 from procs.model.realism import Realism
 
 
@@ -21,19 +22,20 @@ class Noise(BaseModel):
     kick_delay_s: float = Field(default=0.0, ge=0.0, le=1.0)
     """From the arrival of a kicker command until the kicker follows it. NuBot: 100 ms with a relay."""
     kick_direction_sd_deg: float = Field(default=0.0, ge=0.0, le=90.0)
-    """Error of a kick's direction. CAMBADA accepts 1 degree."""
+    """Error of a kick's direction, of 90 degrees at most. CAMBADA accepts 1 degree."""
     kick_speed_sd: float = Field(default=0.0, ge=0.0, le=1.0)
-    """Relative error of a kick's speed."""
+    """Relative error of a kick's speed, of 100 % at most: no kick drives the ball backwards."""
     friction_spread: float = Field(default=0.0, ge=0.0, lt=1.0)
     """The ball's sliding and rolling deceleration are scaled by a factor between one minus and one plus this; 30 %
     cover the published values."""
     handling_loss: float = Field(default=0.0, ge=0.0, le=1.0)
     """Share of the ball handling's force that is missing; the handling loses a ball that asks for more."""
     wheel_scale_sd: float = Field(default=0.0, ge=0.0, le=1.0)
-    """Relative error of each wheel's encoder, constant in a match. Twente: a constant factor for each axis."""
+    """Relative error of each wheel's encoder, of 100 % at most, constant in a match. Twente: a constant factor for each
+    axis."""
     wheel_noise_sqrt_s: float = Field(default=0.0, ge=0.0, le=10.0)
     """Relative error of the way that a wheel measures in one second, with steady speed. Tick by tick it is larger by
-    the square root of the ticks in a second."""
+    the square root of the ticks in a second, but 100 % at most."""
     compass_noise_sqrt_s: float = Field(default=0.0, ge=0.0, le=10.0)
     """Error in rad of the compass averaged over one second."""
     compass_drift_sd_rad: float = Field(default=0.0, ge=0.0, le=10.0)
@@ -109,3 +111,11 @@ Changes = Annotated[dict[str, float], AfterValidator(_checked)]
 def noise_of(realism: Realism, changes: dict[str, float]) -> Noise:
     """Returns the errors of a preset with changes."""
     return PRESETS[realism].model_copy(update=changes)
+
+
+def factor(deviation: float, drawn: float) -> float:
+    """Returns the factor of a quantity with a relative error of this standard deviation, from a standard normal draw.
+
+    It is from 0 to 2: no error turns a quantity around, and the mean stays 1.
+    """
+    return clamp(1.0 + deviation * drawn, 0.0, 2.0)

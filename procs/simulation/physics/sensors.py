@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from procs.model.geometry import clamp
 from procs.model.kinematics import Wheels
-from procs.simulation.physics.realism import Noise
+from procs.simulation.physics.realism import Noise, factor
 
 _ACCELERATION_SD_M_S2 = 0.0  # the simulated accelerometer has no error of its own
 _LEAST_S = 1e-3  # a shorter time between readings gives no more noise
@@ -18,13 +19,16 @@ class Encoders:
     def __init__(self, noise: Noise, rng: np.random.Generator) -> None:
         self._noise = noise
         self._rng = rng
-        self._scales = (1.0 + noise.wheel_scale_sd * rng.standard_normal(3)).tolist()
+        self._scales = [factor(noise.wheel_scale_sd, drawn) for drawn in rng.standard_normal(3).tolist()]
 
     def read(self, wheels_m_s: Wheels, passed_s: float) -> list[float]:
         """Returns the rim speeds as measured, `passed_s` after the last reading."""
         deviation = self._noise.wheel_noise_sqrt_s / math.sqrt(max(passed_s, _LEAST_S))
         noise = (deviation * self._rng.standard_normal(3)).tolist()
-        return [speed * (scale + error) for speed, scale, error in zip(wheels_m_s, self._scales, noise, strict=True)]
+        return [
+            speed * clamp(scale + error, 0.0, 2.0 * scale)  # a wheel that turns ahead counts nothing backwards
+            for speed, scale, error in zip(wheels_m_s, self._scales, noise, strict=True)
+        ]
 
 
 class Inertial(NamedTuple):
