@@ -22,6 +22,8 @@ class BallModel(BaseModel):
     """Vertical speed below which the ball stays on the ground instead of bouncing. An estimate."""
     spin_s: float = Field(default=0.5, gt=0.0, le=1000.0)
     """Time constant in s with which the ground stops a spin around the vertical. An estimate."""
+    standstill_m_s: float = Field(default=0.01, ge=0.0, le=1.0)
+    """Speed in m/s below which a rolling ball rests. An estimate: it would roll 0.1 mm further."""
     inertia: float = Field(default=2 / 3, ge=0.1, le=1.0)
     """Moment of inertia divided by mass and squared radius: 2/3 for a thin shell, 2/5 for a solid ball."""
 

@@ -35,6 +35,8 @@ class RobotModel(BaseModel):
     """Height of the body, in metres; the team markers are below. Rule book of 2016: 0.40 to 0.80 m."""
     mass_kg: float = Field(default=35.0, ge=1.0, le=200.0)
     """Mass of the whole robot, in kilograms. The robots of simatch have 31 to 39 kg."""
+    inertia: float = Field(default=0.5, ge=0.1, le=1.0)
+    """Moment of inertia divided by mass and squared radius: 1/2 for a solid disc, 1 for a ring. An estimate."""
     wheel_distance_m: float = Field(default=0.2, ge=0.02, le=0.5)
     """Distance from the robot's middle to each wheel, in metres."""
     wheel_limit_m_s: float = Field(default=3.5, gt=0.0, le=20.0)

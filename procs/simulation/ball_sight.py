@@ -13,8 +13,6 @@ from procs.vision.ball_finder import IN_THE_AIR, area_share, most_fit, seems_who
 from procs.vision.mirror import Mirror
 from procs.vision.uncertainty import sphere_covariance
 
-LEAST_VISIBLE = 0.4
-"""Least visible part of a ball that is found; ER-Force's threshold, too."""
 _LEAST_AREA = 1e-6
 _VISIBLE = (0.37, 0.50, 0.63, 0.75, 0.86, 0.95, 1.0)
 _SPREADS = (1.45, 1.29, 1.18, 1.11, 1.05, 1.025, 1.015)
@@ -30,6 +28,8 @@ class BallSight:
     reach_m: float
     """Largest distance of a ball that is found."""
     errors: PerceptErrors
+    least_visible: float
+    """Least visible part of a ball that is found."""
     stated_px: float
     """Standard deviation of a ball's place that the finder states, with the shaking of the mirror."""
 
@@ -70,7 +70,7 @@ class BallSight:
     def on_ground(self, x_m: float, y_m: float, confidence: float) -> ball_percept_t:
         """Returns the percept of a ball that is found at a place of the robot frame, or of none."""
         percept = ball_percept_t()
-        if confidence >= LEAST_VISIBLE and math.hypot(x_m, y_m) <= self.reach_m:
+        if confidence >= self.least_visible and math.hypot(x_m, y_m) <= self.reach_m:
             percept.visible, percept.confidence = True, confidence
             percept.x_m, percept.y_m = x_m, y_m
             deviation_px = self.stated_px + 2.0 * max(0.0, 0.9 - confidence)

@@ -60,6 +60,10 @@ class CameraConfig(Config):
     """Part of the lines' paint that is missing."""
     clutter_1_m2: float | None = Setting(default=None, ge=0.0, le=10.0)
     """White specks on a square metre of the floor around the field."""
+    bare_m: float = Setting(default=0.0625, gt=0.0, le=1.0)
+    """Width of a place where paint is missing, in metres: half a line. An estimate."""
+    speck_m: float = Setting(default=0.06, gt=0.0, le=1.0)
+    """Radius of a white speck, in metres: as wide as a line. An estimate."""
     gaps_1_min: float | None = Setting(default=None, ge=0.0, le=1e6)
     """Interruptions in a minute, in which frames are lost in a row."""
     gap_s: float | None = Setting(default=None, ge=0.0, le=60.0)
@@ -90,7 +94,7 @@ class Camera(Component):
         """Computes the painted field and the noise, which are the same for all robots."""
         errors = chosen(PRESETS[config.realism], config)
         mirror = config.mirror.mirror(config.roll_deg, config.pitch_deg)
-        Renderer(mirror, config.field, Bodies.of(config.robot, config.ball), _wear(errors))
+        Renderer(mirror, config.field, Bodies.of(config.robot, config.ball), _wear(errors, config))
         SensorNoise(mirror.size_px, errors.noise_levels, config.brightness, errors.flicker)
 
     def init(self) -> None:
@@ -115,7 +119,7 @@ class Camera(Component):
         errors = self._errors = chosen(PRESETS[config.realism], config)
         roll_deg, pitch_deg = (errors.tilt_sd_deg * self._tilts).tolist()
         mirror = config.mirror.mirror(config.roll_deg + roll_deg, config.pitch_deg + pitch_deg)
-        self._renderer = Renderer(mirror, config.field, Bodies.of(config.robot, config.ball), _wear(errors))
+        self._renderer = Renderer(mirror, config.field, Bodies.of(config.robot, config.ball), _wear(errors, config))
         blue, green, red = (1.0 + errors.cast * self._casts).tolist()
         self._noise = SensorNoise(
             config.mirror.size_px,
@@ -141,5 +145,5 @@ class Camera(Component):
         return float(right_px), float(down_px)
 
 
-def _wear(errors: CameraErrors) -> Wear:
-    return Wear(errors.worn, errors.clutter_1_m2)
+def _wear(errors: CameraErrors, config: CameraConfig) -> Wear:
+    return Wear(errors.worn, errors.clutter_1_m2, config.bare_m, config.speck_m)

@@ -22,16 +22,13 @@ from procs.model.field import Field, Point
 from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
 from procs.model.robot import ROBOT, TEAM_NUMBERS, RobotModel, team_in
-from procs.simulation.ball_sight import LEAST_VISIBLE, BallSight, candidate
+from procs.simulation.ball_sight import BallSight, candidate
 from procs.simulation.delayed_truth import DelayedTruth
 from procs.simulation.gaps import Gaps
 from procs.simulation.line_scan import line_scan
 from procs.simulation.percept_errors import PRESETS
 from procs.simulation.sight import blurred, claimed, glimpse_of, hidden, shaken
 from procs.vision.calibration import MirrorConfig, below_mirror
-
-_LINE_PX, _ROBOT_PX = 2.5, 4.0  # picture that the detector needs beyond a line and the near edge of a robot
-_TILT_SHARE = 0.8  # of a tilt by an angle: shift of what is a few metres away, as a part of the mirror's scale
 
 
 class PerceptsConfig(Config):
@@ -96,6 +93,22 @@ class PerceptsConfig(Config):
     """Largest distance of a ball; it is less where the mirror shows less."""
     most_points: int = Setting(default=150, ge=1, le=10_000)
     """Line points sent at most."""
+    least_visible: float = Setting(default=0.4, gt=0.0, le=1.0)
+    """Least visible part of a ball or a robot that is found; also the confidence in a ball that is not there.
+    ER-Force's threshold."""
+    beyond_line_px: float = Setting(default=2.5, ge=0.0, le=50.0)
+    """Pixels of the picture that the detector needs beyond a line. Fitted to rendered pictures."""
+    beyond_robot_px: float = Setting(default=4.0, ge=0.0, le=50.0)
+    """Pixels of the picture that the detector needs beyond the near edge of a robot. Fitted to rendered pictures."""
+    tilt_share: float = Setting(default=0.8, ge=0.0, le=2.0)
+    """Shift of what is a few metres away by a tilt of one rad, in pixels, as a part of the mirror's scale. An estimate
+    from the mirror's shape."""
+    ball_phantom_m: float = Setting(default=0.5, gt=0.0, le=20.0)
+    """Least distance of a ball that is not there, in metres; the largest is the ball's. An estimate."""
+    robot_phantom_m: float = Setting(default=0.6, gt=0.0, le=20.0)
+    """Least distance of a robot that is not there, in metres; the largest is that of robots. An estimate."""
+    line_phantom_share: float = Setting(default=0.8, ge=0.0, le=2.0)
+    """Distance of a point that does not lie on a line, as a part of that of the line behind it. An estimate."""
 
     _visible = field_validator("ball")(below_mirror)
 
@@ -154,16 +167,21 @@ class Percepts(Component):
     def _apply_settings(self) -> None:
         self._errors = chosen(PRESETS[self.config.realism], self.config)
         self._mirror = self.config.mirror.mirror()
-        self._tilt_px = _TILT_SHARE * self._mirror.scale_px * math.radians(self._errors.tilt_sd_deg) * self._tilts
+        self._tilt_px = (
+            self.config.tilt_share * self._mirror.scale_px * math.radians(self._errors.tilt_sd_deg) * self._tilts
+        )
         self._stated = EXPECTED[self.config.realism]
         end_px = min(self._mirror.radius_px(self.config.reach_m), self._mirror.size_px / 2 - 1)
-        self._line_reach_m, edge_m = (self._mirror.distance_m(end_px - spare) for spare in (_LINE_PX, _ROBOT_PX))
+        beyond_px = self.config.beyond_line_px, self.config.beyond_robot_px
+        self._line_reach_m, edge_m = (self._mirror.distance_m(end_px - spare) for spare in beyond_px)
         body_px = self._mirror.radius_px(self.config.robot.radius_m)
-        self._body_m = self._mirror.distance_m(body_px + _LINE_PX)
+        self._body_m = self._mirror.distance_m(body_px + beyond_px[0])
         self._robot_reach_m = edge_m + self.config.robot.radius_m
         radius_m = self.config.ball.radius_m
         self._ball_reach_m = min(self.config.ball_reach_m, self._mirror.reach_m(radius_m))
-        self._ball_sight = BallSight(self._mirror, radius_m, self._ball_reach_m, self._errors, self._stated.ball_px)
+        self._ball_sight = BallSight(
+            self._mirror, radius_m, self._ball_reach_m, self._errors, self.config.least_visible, self._stated.ball_px
+        )
         self._lines = line_scan(self.config.field)
 
     def _see_ball(
@@ -180,16 +198,17 @@ class Percepts(Component):
             seen_m = at_m + aside_m / max(float(np.hypot(*at_m[0])), radius_m) * np.array(((-at_m[0, 1], at_m[0, 0]),))
             percept = self._ball_sight.found(seen_m, truth.ball_z_m, visible, shake_px, noise)
         if phantom < -math.expm1(-errors.ball_phantoms_1_s * passed_s):
-            range_m, angle_rad = 0.5 + distance * (self._ball_reach_m - 0.5), direction * math.tau
+            least_m = self.config.ball_phantom_m
+            range_m, angle_rad = least_m + distance * (self._ball_reach_m - least_m), direction * math.tau
             x_m, y_m = range_m * math.cos(angle_rad), range_m * math.sin(angle_rad)
-            ghost = self._ball_sight.on_ground(x_m, y_m, LEAST_VISIBLE)
+            ghost = self._ball_sight.on_ground(x_m, y_m, self.config.least_visible)
             if percept.visible:
                 percept.others = [candidate(ghost)]
             else:
                 percept = ghost
         if not percept.visible and self._mouth_rng.random() < -math.expm1(-errors.mouth_phantoms_1_s * passed_s):
             in_mouth_m = self.config.robot.held_ball_m(self.config.ball)
-            percept = self._ball_sight.on_ground(in_mouth_m, 0.0, LEAST_VISIBLE)
+            percept = self._ball_sight.on_ground(in_mouth_m, 0.0, self.config.least_visible)
         self.ball_percept.value = percept
 
     def _see_robots(self, robots_m: Floats, teams: list[int], shake_px: tuple[float, float], passed_s: float) -> None:
@@ -199,14 +218,16 @@ class Percepts(Component):
         known = self._marker_rng.random(len(found_m)) >= errors.team_missed
         luck, noise = self.rng.random(len(found_m)), self.rng.standard_normal((2, len(found_m)))
         phantom, direction, distance = self.rng.random(3)
-        seen = (luck >= errors.robot_missed) & (hidden(found_m, robots_m, config.robot.radius_m) < 1 - LEAST_VISIBLE)
+        most_hidden = 1 - config.least_visible
+        seen = (luck >= errors.robot_missed) & (hidden(found_m, robots_m, config.robot.radius_m) < most_hidden)
         along, across = shaken(found_m, shake_px)
         moved_m = blurred(
             self._mirror, found_m, along + errors.robot_along_px * noise[0], across + errors.robot_across_px * noise[1]
         )[seen]
         colours = np.where(known, np.array(teams, int)[near], obstacle_t.TEAM_UNKNOWN)[seen].tolist()
         if phantom < -math.expm1(-errors.robot_phantoms_1_s * passed_s):
-            range_m, angle_rad = 0.6 + distance * (self._robot_reach_m - 0.6), direction * math.tau
+            least_m = config.robot_phantom_m
+            range_m, angle_rad = least_m + distance * (self._robot_reach_m - least_m), direction * math.tau
             moved_m = np.vstack((moved_m, range_m * np.array((math.cos(angle_rad), math.sin(angle_rad)))))
             colours.append(obstacle_t.TEAM_UNKNOWN)
         percepts = self.obstacle_percepts.value = obstacle_percepts_t()
@@ -231,7 +252,7 @@ class Percepts(Component):
         )
         found_m = found_m[np.hypot(found_m[:, 0], found_m[:, 1]) >= self._body_m]
         luck, noise = self.rng.random((2, len(found_m))), self.rng.standard_normal((2, len(found_m)))
-        found_m[luck[1] < errors.line_phantoms] *= 0.8
+        found_m[luck[1] < errors.line_phantoms] *= config.line_phantom_share
         seen = (luck[0] >= errors.line_missed) & (hidden(found_m, robots_m, config.robot.radius_m) <= 0)
         along, across = shaken(found_m, shake_px)
         moved_m = blurred(self._mirror, found_m, along + errors.line_px * noise[0], across + errors.line_px * noise[1])

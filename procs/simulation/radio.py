@@ -27,6 +27,8 @@ class RadioConfig(Config):
     """Mean duration of an interruption."""
     bandwidth_bit_s: float | None = Field(default=None, ge=0.0)
     """Rate of the team's channel, to which messages beyond it are lost; 0: no limit. Rule book of 2016: 2.2 Mbit/s."""
+    burst_s: float = Field(default=0.2, gt=0.0, le=10.0)
+    """Idle time in s that the channel makes up for: so much data may be sent at once. An estimate."""
 
 
 class Radio(Component):
@@ -50,7 +52,7 @@ class Radio(Component):
     def loop(self) -> None:
         """Sends the messages of this tick, and delivers those that arrive until the next, in which robots read them."""
         settings = chosen(PRESETS[self.config.realism], self.config)
-        self._links.pass_time(self.clock.now_us, settings)
+        self._links.pass_time(self.clock.now_us, settings, self.config.burst_s)
         waiting = [
             (robot, message, len(message.encode()) if settings.bandwidth_bit_s else 0)
             for robot, said in self.messages.items()

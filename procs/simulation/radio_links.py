@@ -12,8 +12,6 @@ from procs.model.realism import Realism
 
 T = TypeVar("T")
 
-_BURST_S = 0.2  # the channel makes up for idle time of that length
-
 
 class RadioSettings(BaseModel):
     """Quality of the radio. 0: ideal."""
@@ -60,10 +58,13 @@ class RadioLinks(Generic[T]):
         self._sent_us: dict[str, int] = {}
         """Time of the last message of each robot that the channel had room for."""
 
-    def pass_time(self, now_us: int, settings: RadioSettings) -> None:
-        """Interrupts links and refills the channel; call it once a tick, before messages are sent."""
+    def pass_time(self, now_us: int, settings: RadioSettings, burst_s: float) -> None:
+        """Interrupts links and refills the channel; call it once a tick, before messages are sent.
+
+        The channel makes up for idle time of `burst_s`.
+        """
         passed_s = 0.0 if self._passed_us < 0 else (now_us - self._passed_us) / 1e6
-        burst_bit = settings.bandwidth_bit_s * _BURST_S
+        burst_bit = settings.bandwidth_bit_s * burst_s
         first = self._passed_us < 0
         self._passed_us = now_us
         self._credit_bit = (

@@ -14,7 +14,7 @@ _STABLE = 1.8  # largest share of an error of the slip that a step may take back
 def longest_step_s(robot: RobotModel, settings: DriveSettings) -> float:
     """Returns the longest step in which the force of the wheels does not oscillate with their slip."""
     grip_1_s = settings.traction * GRAVITY_M_S2 / settings.full_slip_m_s
-    driving_1_s, turning_1_s = grip_1_s / 2, 2 * grip_1_s * (robot.wheel_distance_m / robot.radius_m) ** 2
+    driving_1_s, turning_1_s = grip_1_s / 2, grip_1_s * (robot.wheel_distance_m / robot.radius_m) ** 2 / robot.inertia
     return _STABLE / max(driving_1_s, turning_1_s)
 
 

@@ -29,7 +29,7 @@ class Robot:
         half_rad = math.radians(robot.mouth_half_angle_deg)
         self.mouth_x_m = robot.mouth_m
         """From the robot's middle to the plane of the mouth."""
-        self.body = pymunk.Body(robot.mass_kg, robot.mass_kg * robot.radius_m**2 / 2)
+        self.body = pymunk.Body(robot.mass_kg, robot.inertia * robot.mass_kg * robot.radius_m**2)
         half_mouth_m = robot.radius_m * math.sin(half_rad)
         circle = pymunk.Circle(self.body, robot.radius_m)
         circle.collision_type, circle.elasticity, circle.friction = (

@@ -8,8 +8,6 @@ import math
 
 from procs.model.ball import BallModel
 
-STANDSTILL_M_S = 0.01
-
 
 class RollingFriction:
     """Keeps the ball's spin as the velocity (m/s, world frame) at which it would roll without sliding."""
@@ -18,7 +16,7 @@ class RollingFriction:
         """`scale` multiplies both decelerations of `ball`."""
         self._sliding_m_s2 = ball.sliding_m_s2 * scale
         self._rolling_m_s2 = ball.rolling_m_s2 * scale
-        self._inertia = ball.inertia
+        self._inertia, self._standstill_m_s = ball.inertia, ball.standstill_m_s
         self.spin_x_m_s = 0.0
         self.spin_y_m_s = 0.0
 
@@ -42,6 +40,6 @@ class RollingFriction:
         speed_m_s = math.hypot(vx_m_s, vy_m_s)
         rolling_s = duration_s - until_rolling_m_s / self._sliding_m_s2
         slower_m_s = speed_m_s - self._rolling_m_s2 * rolling_s
-        factor = slower_m_s / speed_m_s if slower_m_s > STANDSTILL_M_S else 0.0
+        factor = slower_m_s / speed_m_s if slower_m_s > self._standstill_m_s else 0.0
         self.spin_x_m_s, self.spin_y_m_s = vx_m_s * factor, vy_m_s * factor
         return self.spin_x_m_s, self.spin_y_m_s

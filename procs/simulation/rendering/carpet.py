@@ -23,8 +23,6 @@ FLOOR_NUMBER = _COLOURS.index(FLOOR)
 """Number of the colour of everything beyond the carpet."""
 _SHIFT = 4  # fractional bits of OpenCV's drawing coordinates
 _ARC_STEP_RAD = math.radians(3.0)
-_BARE_PX = 3  # width of a place where paint is missing, about half a line
-_SPECK_M = 0.06  # radius of a speck: as wide as a line
 _WEAR_SEED = 1
 
 
@@ -61,6 +59,10 @@ class Wear(NamedTuple):
     """Part of the lines' paint that is missing, 0..1."""
     clutter_1_m2: float = 0.0
     """White specks on a square metre of the floor around the field."""
+    bare_m: float = 0.0625
+    """Width of a place where paint is missing."""
+    speck_m: float = 0.06
+    """Radius of a speck."""
 
 
 NEW = Wear()
@@ -85,25 +87,26 @@ def lay_carpet(field: Field, metres_per_px: float = METRES_PER_PX, wear: Wear = 
     for mark in field.marks():
         _paint(carpet, _circle(mark, (field.mark_diameter_m - metres_per_px) / 2), WHITE)
     rng = np.random.default_rng(_WEAR_SEED)
-    _rub_off(carpet, wear.worn, rng)
-    _litter(carpet, field, wear.clutter_1_m2, rng)
+    _rub_off(carpet, wear, rng)
+    _litter(carpet, field, wear, rng)
     return carpet
 
 
-def _rub_off(carpet: Carpet, worn: float, rng: np.random.Generator) -> None:
+def _rub_off(carpet: Carpet, wear: Wear, rng: np.random.Generator) -> None:
     height, width = carpet.numbers.shape
-    bare = rng.random((height // _BARE_PX + 1, width // _BARE_PX + 1)) < worn
-    bare = bare.repeat(_BARE_PX, axis=0)[:height].repeat(_BARE_PX, axis=1)[:, :width]
+    bare_px = max(1, round(wear.bare_m / carpet.metres_per_px))
+    bare = rng.random((height // bare_px + 1, width // bare_px + 1)) < wear.worn
+    bare = bare.repeat(bare_px, axis=0)[:height].repeat(bare_px, axis=1)[:, :width]
     carpet.numbers[bare & (carpet.numbers == _COLOURS.index(WHITE))] = _COLOURS.index(GREEN)
 
 
-def _litter(carpet: Carpet, field: Field, specks_1_m2: float, rng: np.random.Generator) -> None:
-    inner = np.array((field.half_length_m + field.border_m, field.half_width_m + field.border_m)) + _SPECK_M
+def _litter(carpet: Carpet, field: Field, wear: Wear, rng: np.random.Generator) -> None:
+    inner = np.array((field.half_length_m + field.border_m, field.half_width_m + field.border_m)) + wear.speck_m
     outer = inner + _FLOOR_M
-    count = round(4 * float(outer.prod()) * specks_1_m2)
+    count = round(4 * float(outer.prod()) * wear.clutter_1_m2)
     for x_m, y_m in (outer * rng.uniform(-1.0, 1.0, (count, 2))).tolist():
         if abs(x_m) > inner[0] or abs(y_m) > inner[1]:
-            _paint(carpet, _circle(Point(x_m, y_m), _SPECK_M), WHITE)
+            _paint(carpet, _circle(Point(x_m, y_m), wear.speck_m), WHITE)
 
 
 def _lay_floor(numbers: NDArray[np.uint8], patch_px: int) -> None:
