@@ -1,6 +1,7 @@
 """The history of the match, which is written seldom, reaches a reader and a referee that are restarted."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -61,14 +62,18 @@ def test_restarted_referee_goes_on_with_the_match(launch: Launch, ports: PortBlo
     assert [each.n for each in recording.decoded("world/match_history")] == [1, 2, 4, 4]
 
 
-def test_game_stopped_by_hand_stays_so_after_a_restart(launch: Launch, ports: PortBlock, tmp_path: Path) -> None:
+@pytest.mark.parametrize("verbs", [("restart",), ("kill", "start")])
+def test_stopped_game_stays_so_after_a_restart(
+    launch: Launch, ports: PortBlock, tmp_path: Path, verbs: Sequence[str]
+) -> None:
     write_files(tmp_path, FILES)
     run = Steered(launch("match.yaml", "--speed", "20", "--set", "world/referee.kick_off_stoppage_s=3"), ports)
     run.fwk("call", "world/referee_command", "name=penalties")
     for name in ("goal", "subgoal"):
         run.fwk("call", "world/referee_command", f"name={name}", "team=cyan")
     run.fwk("call", "world/referee_command", "name=stop")
-    run.fwk("restart", "world/referee")
+    for verb in verbs:
+        run.fwk(verb, "world/referee")
     run.ticks_pass(600)
     recording = Recording(run.end())
     states, memories = recording.decoded("world/game_state"), recording.decoded("world/referee_memory")
