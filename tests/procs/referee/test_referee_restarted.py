@@ -5,9 +5,25 @@ import pytest
 from procs.referee.memory import recall, written
 from procs.referee.sight import Sight
 from procs.referee.whistle import Whistle
-from tests.procs.referee import test_referee_advantage, test_referee_mirrored, test_referee_set_pieces
+from tests.procs.referee import (
+    test_referee_advantage,
+    test_referee_by_hand,
+    test_referee_bystanders,
+    test_referee_fouls,
+    test_referee_match,
+    test_referee_mirrored,
+    test_referee_set_pieces,
+)
 
-_CASES = (test_referee_mirrored, test_referee_advantage, test_referee_set_pieces)
+_CASES = (
+    test_referee_advantage,
+    test_referee_by_hand,
+    test_referee_bystanders,
+    test_referee_fouls,
+    test_referee_match,
+    test_referee_mirrored,
+    test_referee_set_pieces,
+)
 globals().update({name: case for each in _CASES for name, case in vars(each).items() if name.startswith("test_")})
 
 
