@@ -22,7 +22,7 @@ from procs.referee.names import Names
 from procs.referee.orders import carry_out
 from procs.referee.reasons import OFF_FIELD, Reason
 from procs.referee.rules import Rules
-from procs.referee.sight import LEAVES, Sight
+from procs.referee.sight import LEAVES, Sight, left_unseen
 from procs.referee.whistle import Whistle
 
 _KINDS = frozenset(Kind)
@@ -73,8 +73,8 @@ class Referee(Component):
         passed_s = self.clock.period_s if self._before_us < 0 else self.clock.since_s(self._before_us)
         self._before_us = self.clock.now_us
         sight = self._sight()
-        if not self._begun:
-            self._begin()
+        if not self._begun and self._begin():
+            sight = self._with_unseen(sight)
         if sight.events or not self.match_events.value.frozen:
             whistle.step(passed_s, sight)
             for call in whistle.calls:
@@ -91,8 +91,8 @@ class Referee(Component):
         self.referee_memory.value.text = written(whistle)
         self.referee_memory.write()
 
-    def _begin(self) -> None:
-        """Begins the match, or goes on with that which this referee led before it was restarted."""
+    def _begin(self) -> bool:
+        """Begins the match, or goes on with that of the referee before a restart; returns whether it goes on."""
         self._begun = True
         whistle = self._whistle
         if self.told_memory.has_value:
@@ -104,8 +104,17 @@ class Referee(Component):
                 self.match_history.value.events = self.told_history.value.events
                 self._has_grown, self._placed = True, whistle.placements
                 self.log.info(f"goes on, {self._stands()}")
-                return
+                return True
         self._record(Call(whistle.state, whistle.team))
+        return False
+
+    def _with_unseen(self, sight: Sight) -> Sight:
+        """Adds that the ball has left the field, if it did between the referee before and this one."""
+        report = self.match_events.value
+        told = any(event.kind in LEAVES for event in sight.events)
+        if told or report.ball_in_field or report.frozen or not self.match_events.has_value or self._whistle.stopped:
+            return sight
+        return sight._replace(events=[*sight.events, left_unseen(sight.ball, sight.last_touch, self.config.field)])
 
     def _sight(self) -> Sight:
         ball, name_of = self.match_events.value, self._names.of_player

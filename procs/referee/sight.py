@@ -4,8 +4,9 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
+from procs.model.ball import RADIUS_M
 from procs.model.events import Event, Kind
-from procs.model.field import Point
+from procs.model.field import SIDES, Field, Point
 from procs.model.robot import number_of
 from procs.model.teams import Team, team_number
 
@@ -64,3 +65,12 @@ class Sight(NamedTuple):
         """Returns the goalkeeper of a team, the robot with the lowest number; empty for a robot that is alone."""
         robots = self.team(team)
         return robots[0] if len(robots) > 1 else ""
+
+
+def left_unseen(ball: Point, last_touch: str, field: Field) -> Event:
+    """Returns the event of a ball that lies outside the field, and left it while there was no referee."""
+    if any(field.in_goal(*ball, side, RADIUS_M) for side in SIDES):
+        kind = Kind.GOAL
+    else:
+        kind = Kind.OUT_SIDE if abs(ball.y_m) > field.half_width_m + RADIUS_M else Kind.OUT_END
+    return Event(kind, last_touch, "", *ball, 0.0)

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from fwk.testing import Bench
-from lcmtypes.soccer import game_event_t, game_state_t, match_history_t, true_robot_t
+from lcmtypes.soccer import game_event_t, game_state_t, match_event_t, match_history_t, true_robot_t
 from procs.model.field import Point
 from procs.model.game_states import State
 from procs.referee.cards import Card
@@ -38,15 +38,15 @@ class Led:
             self.bench.iterate()
             assert self.bench.port("referee_command").sent[-1].answer.reason == ""
 
-    def restart(self) -> None:
-        """Puts a new referee in the place of this one."""
+    def restart(self, **report: Any) -> None:
+        """Puts a new referee in the place of this one; without a report the world is frozen at first."""
         memory, history = self.bench.port("referee_memory").sent[-1], self.bench.port("match_history").sent[-1]
         tick = self.bench.tick
         self.bench = Bench(Referee, "world/referee", **self.rules)
         self.bench.tick = tick
         self.bench.port("told_memory").put(memory)
         self.bench.port("told_history").put(history)
-        self.bench.port("match_events").put(frozen=True)
+        self.bench.port("match_events").put(**(report or {"frozen": True}))
         self.bench.iterate()
 
     def go_on(self, time_s: float) -> None:
@@ -230,3 +230,27 @@ def test_place_where_play_was_stopped_is_remembered() -> None:
     left_at = led.whistle.restart_place(Point(0.0, 0.0))
     led.restart()
     assert led.whistle.restart_place(Point(0.0, 0.0)) == left_at != Point(0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("place", "team", "state", "score"),
+    [
+        ((3.0, 7.3), game_state_t.TEAM_MAGENTA, State.THROW_IN, (0, 0)),
+        ((11.3, 4.0), game_state_t.TEAM_MAGENTA, State.GOAL_KICK, (0, 0)),
+        ((11.3, 0.3), game_state_t.TEAM_MAGENTA, State.KICK_OFF, (1, 0)),
+    ],
+)
+def test_ball_that_left_without_a_referee_is_called(
+    place: tuple[float, float], team: int, state: State, score: tuple[int, int]
+) -> None:
+    led = Led(automatic=True)
+    led.ask("start")
+    for x_m, robot in ((0.0, "cyan3"), (2.0, ""), (4.0, "cyan2")):
+        touch = match_event_t(kind=match_event_t.TOUCH, robot=robot, x_m=x_m)
+        report = {"ball_in_field": True, "last_touch": robot, "events": [touch] if robot else []}
+        led.bench.port("match_events").put(ball_x_m=x_m, **report)
+        led.bench.iterate()
+    assert led.stands[:3] == (State.PLAY, game_state_t.TEAM_NONE, False)
+    led.restart(ball_x_m=place[0], ball_y_m=place[1], last_touch="cyan2")
+    assert led.stands[:3] == (state, team, True)
+    assert (led.state.score_cyan, led.state.score_magenta) == score
