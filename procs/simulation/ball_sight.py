@@ -32,6 +32,10 @@ class BallSight:
     """Least visible part of a ball that is found."""
     stated_px: float
     """Standard deviation of a ball's place that the finder states, with the shaking of the mirror."""
+    whole: float
+    """Visible part from which a ball counts as whole."""
+    hidden_px: float
+    """Growth of that deviation for a ball on the ground of which less is visible, times the part that is missing."""
 
     def found(
         self, at_m: Floats, height_m: float, visible: float, shake_px: tuple[float, float], noise: list[float]
@@ -73,7 +77,7 @@ class BallSight:
         if confidence >= self.least_visible and math.hypot(x_m, y_m) <= self.reach_m:
             percept.visible, percept.confidence = True, confidence
             percept.x_m, percept.y_m = x_m, y_m
-            deviation_px = self.stated_px + 2.0 * max(0.0, 0.9 - confidence)
+            deviation_px = self.stated_px + self.hidden_px * max(0.0, self.whole - confidence)
             percept.covariance_m2 = claimed(self.mirror, x_m, y_m, deviation_px, deviation_px)
         return percept
 

@@ -96,6 +96,11 @@ class PerceptsConfig(Config):
     least_visible: float = Setting(default=0.4, gt=0.0, le=1.0)
     """Least visible part of a ball or a robot that is found; also the confidence in a ball that is not there.
     ER-Force's threshold."""
+    whole_ball: float = Setting(default=0.9, gt=0.0, le=1.0)
+    """Visible part of a ball from which it counts as whole. An estimate."""
+    hidden_px: float = Setting(default=2.0, ge=0.0, le=50.0)
+    """Growth in pixels of a ball's stated standard deviation, times the part of a whole ball that is hidden. An
+    estimate."""
     beyond_line_px: float = Setting(default=2.5, ge=0.0, le=50.0)
     """Pixels of the picture that the detector needs beyond a line. Fitted to rendered pictures."""
     beyond_robot_px: float = Setting(default=4.0, ge=0.0, le=50.0)
@@ -180,7 +185,14 @@ class Percepts(Component):
         radius_m = self.config.ball.radius_m
         self._ball_reach_m = min(self.config.ball_reach_m, self._mirror.reach_m(radius_m))
         self._ball_sight = BallSight(
-            self._mirror, radius_m, self._ball_reach_m, self._errors, self.config.least_visible, self._stated.ball_px
+            self._mirror,
+            radius_m,
+            self._ball_reach_m,
+            self._errors,
+            self.config.least_visible,
+            self._stated.ball_px,
+            self.config.whole_ball,
+            self.config.hidden_px,
         )
         self._lines = line_scan(self.config.field)
 
