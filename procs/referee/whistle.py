@@ -198,6 +198,9 @@ class Whistle(Match):
         """
         if self._repeat(scene):
             return
+        if not scene.touches.robots and any(event.kind in LEAVES for event in scene.sight.events):
+            self.interrupt(self.restart)  # a person, or a robot that takes no part, has taken the ball away
+            return
         stretch, last = self._stretch, self._is_last_act
         reach_s = self.rules.shot_s if self.shootout else self.rules.penalty_s
         scored = penalty_scored(scene, stretch, self.restart, self.time_in_state_s, reach_s)

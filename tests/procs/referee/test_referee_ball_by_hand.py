@@ -4,10 +4,15 @@ import pytest
 
 from fwk.testing import MemorySystem
 from lcmtypes.soccer import freeze_world_t, game_state_t, place_ball_t, referee_command_t
+from procs.model.events import Event, Kind
+from procs.model.field import Point
 from procs.model.game_states import State
+from procs.referee.orders import carry_out
 from procs.referee.referee import Referee
+from procs.referee.sight import Sight
 from procs.scenarios.dummy import Dummy
 from procs.simulation.simulator import Simulator
+from tests.procs.referee.script import Script
 
 
 class Hands:
@@ -84,3 +89,17 @@ def test_ball_put_outside_in_a_stoppage_is_put_back() -> None:
     game, truth = hands.system.newest("world/game_state"), hands.system.newest("world/ground_truth")
     assert (game.decisions, State(game.state)) == (calls, State.DROP_BALL)
     assert (truth.ball_x_m, truth.ball_y_m) == pytest.approx((game.ball_x_m, game.ball_y_m), abs=0.01)
+
+
+@pytest.mark.parametrize("kind", [Kind.OUT_END, Kind.GOAL])
+def test_deciding_penalty_without_its_ball_is_repeated(kind: Kind) -> None:
+    match = Script(decide=True)
+    carry_out(match.whistle, Sight(match.ball), "penalties")
+    match.started()
+    shooter = match.whistle.team
+    match.ball = Point(11.3, 0.2 if kind is Kind.GOAL else 4.0)
+    match.tick(Event(kind, "", "", *match.ball, 0.0))
+    assert match.state == (State.PENALTY, shooter, True)
+    assert match.whistle.shootout is not None
+    assert set(match.whistle.shootout.shots.values()) == {0}, "no miss"
+    assert match.started().whistle.spot == match.ball
