@@ -14,9 +14,12 @@ THROW_LIMIT_M_S = 15.0
 """Largest part of a thrown ball's velocity along each axis."""
 
 
-def longest_step_within_nets_s(ball: BallModel, robot: RobotModel) -> float:
-    """Returns the longest step in which no ball gets from one side of a net to the other."""
-    fastest_m_s = max(math.sqrt(2) * THROW_LIMIT_M_S, robot.kick_limit_m_s + robot.wheel_limit_m_s)
+def longest_step_within_nets_s(ball: BallModel, robot: RobotModel, kick_error: float) -> float:
+    """Returns the longest step in which no ball gets from one side of a net to the other.
+
+    `kick_error` is the factor of a kick's speed with the largest error.
+    """
+    fastest_m_s = max(math.sqrt(2) * THROW_LIMIT_M_S, kick_error * robot.kick_limit_m_s + robot.wheel_limit_m_s)
     return (ball.radius_m + NET_RADIUS_M) / fastest_m_s
 
 

@@ -21,13 +21,14 @@ from procs.simulation.physics.drive import Drive, longest_step_s
 from procs.simulation.physics.kick_mechanism import Kicker, Push
 from procs.simulation.physics.line_judge import LineJudge
 from procs.simulation.physics.mouth import Mouth
-from procs.simulation.physics.realism import Noise
+from procs.simulation.physics.realism import Noise, factor
 from procs.simulation.physics.robot_body import Robot
 from procs.simulation.physics.room import Room
 from procs.simulation.physics.settings import PhysicsSettings
 from procs.simulation.physics.start_places import Pose, starting_pose
 from procs.simulation.physics.tops import Tops
 
+_DEVIATIONS = 6.0  # no draw of a normal distribution is further from its mean
 _FREE_M = 0.02  # between robot and ball when the field crew puts it down
 _PRESSED_M = 0.002  # as much as bodies that touch may overlap
 
@@ -69,10 +70,13 @@ class World:
         self._field = field or Field()
         self._robot = robot
         self._physics = physics or PhysicsSettings()
-        self._step_s = min(
-            self._physics.step_s, longest_step_s(robot, self._physics.drive), longest_step_within_nets_s(ball, robot)
-        )
         noise = noise or Noise()
+        hardest_kick = factor(noise.kick_speed_sd, _DEVIATIONS)
+        self._step_s = min(
+            self._physics.step_s,
+            longest_step_s(robot, self._physics.drive),
+            longest_step_within_nets_s(ball, robot, hardest_kick),
+        )
         self._space = pymunk.Space()
         self._space.collision_slop = 0.001  # pymunk's default is meant for pixels: here it would be 10 cm
         build_arena(self._space, self._field, self._physics.contacts)

@@ -68,3 +68,14 @@ def test_no_message_arrives_before_it_is_sent() -> None:
         links.send("cyan1", 1, 1_000_000, settings)
         assert links.receive(999_999) == {}
         assert links.receive(11_000_000) == {"cyan2": [1]}
+
+
+@pytest.mark.parametrize("offset_m", np.linspace(0.0, 0.14, 15))
+def test_hardest_kick_stays_in_the_goal(offset_m: float) -> None:
+    """The ball of a kick with the largest error does not get through the net."""
+    world = World(["cyan1"], np.random.default_rng(1), noise=Noise(kick_speed_sd=1.0))
+    world.ball.put(10.0 + offset_m, 0.0)
+    world.ball.body.velocity = (27.0, 0.0)
+    for _ in range(5):
+        world.advance(40_000)
+    assert world.ball.body.position.x < 11.6
