@@ -27,7 +27,7 @@ from procs.referee.stretch import Stretch
 from procs.referee.touches import Carrier, Touches
 
 _SPOT = Point(0.0, 0.0)
-_KEEPERS = (
+_SAMPLES = (
     *(Advantage(), Areas(), BallPlacing(_SPOT), Cards(), Carrier(), Holding(), Pushing(), RuleBook(), Shootout(1)),
     *(Stretch(State.PLAY, _SPOT), Touches(_SPOT)),
 )
@@ -112,7 +112,7 @@ _WRITERS: dict[type, Callable[[Any], Any]] = {
     **dict.fromkeys(_MAPPINGS, lambda value: {type(value).__name__: [_write(pair) for pair in value.items()]}),
     **dict.fromkeys(_SETS, lambda value: {type(value).__name__: sorted(value)}),
     tuple: _write_tuple,
-    **{type(each): _write_attributes for each in _KEEPERS},
+    **{type(each): _write_attributes for each in _SAMPLES},
 }
 _READERS: dict[str, Callable[[Any], Any]] = {
     **{each.__name__: each for each in (State, Team, Reason)},
@@ -120,5 +120,5 @@ _READERS: dict[str, Callable[[Any], Any]] = {
     **{each.__name__: _reader_of_mapping(each) for each in _MAPPINGS},
     **{each.__name__: each for each in _SETS},
     "tuple": lambda inner: tuple(map(_read, inner)),
-    **{type(each).__name__: _reader_of_attributes(each) for each in _KEEPERS},
+    **{type(each).__name__: _reader_of_attributes(each) for each in _SAMPLES},
 }
