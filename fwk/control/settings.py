@@ -17,6 +17,7 @@ from fwk.control.requests import RequestError
 from fwk.model.errors import PlanError, Problems
 from fwk.model.plan import ComponentPlan, Plan
 from fwk.model.selection import dot_for_slash, matches, nearest
+from fwk.plan.channel_settings import mistakes_with_channels
 from fwk.plan.files.overrides import EXAMPLE, PLACE, RUN_KEYS, SHARED, overrides
 from fwk.plan.files.settings import effective
 from fwk.plan.files.source import Node
@@ -136,6 +137,7 @@ class RunSettings:
             for name, value in said.items()
             if not _described(kind, name)["editable"] and value != _value(self._values[component.index], name)
         ]
+        texts = texts or [text for _, text in mistakes_with_channels(kind, values, component.channels)]
         for text in texts:
             problems.add("", component.name, text)
         if texts:

@@ -4,9 +4,9 @@ import re
 from collections.abc import Sequence
 
 import pytest
-from pydantic import Field
+from pydantic import Field, ValidationInfo, field_validator
 
-from fwk import Component, Config, Writes
+from fwk import Component, Config, Each, Reads, Writes, channel
 from fwk.control.requests import RequestError
 from fwk.control.settings import RunSettings
 from fwk.testing.plans import plan_of
@@ -32,6 +32,25 @@ class Turner(Component):
     stage = "think"
     config: TurnerConfig
     imu: Writes[imu_t]
+
+
+class MixerConfig(Config):
+    gains: dict[str, float] = {}
+
+    @field_validator("gains")
+    @classmethod
+    def check(cls, gains: dict[str, float], info: ValidationInfo) -> dict[str, float]:
+        known = info.context["channels"]["imus"] if info.context else ()
+        for name in gains if info.context else ():
+            if f"{name}/imu" not in known:
+                raise ValueError(f"no robot '{name}'; there are: {', '.join(known)}")
+        return gains
+
+
+class Mixer(Component):
+    stage = "think"
+    config: MixerConfig
+    imus: Each[Reads[imu_t]] = channel("*/imu")
 
 
 class Plain(Component):
@@ -190,3 +209,11 @@ def test_empty_table_can_be_set_while_it_is_empty(settings: RunSettings) -> None
     settings.take(settings.check(["a/turner.table.x=3"])[0], "test")
     with pytest.raises(RequestError, match=re.escape("write table.x=VALUE")):
         settings.check(["a/turner.table={}"])
+
+
+def test_validators_know_the_channels_of_the_component() -> None:
+    settings = RunSettings(plan_of({"a/turner": Turner, "b/turner": Turner, "c/mixer": Mixer}))
+    with pytest.raises(RequestError, match=re.escape("c/mixer: gains: no robot 'x'; there are: a/imu, b/imu")):
+        settings.check(["c/mixer.gains.x=1"])
+    (new,) = settings.check(["c/mixer.gains.b=1"])
+    assert new.said == {"gains.b": 1.0}

@@ -115,6 +115,26 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """,
     ),
     Broken(
+        "it.yaml:2: it/a: its settings cannot be checked: KeyError: 'odometry'",
+        """
+        components:
+          it/a: {use: strange:Mixer}
+        --- strange.py
+        from fwk import Component, Config, Each, Reads, channel
+        from lcmtypes.robot import odometry_t
+        from pydantic import ValidationInfo, field_validator
+        class Gains(Config):
+            gains: dict[str, float] = {}
+            @field_validator("gains")
+            def check(cls, gains, info: ValidationInfo):
+                return gains if info.context is None else info.context["channels"]["odometry"]
+        class Mixer(Component):
+            stage = "think"
+            config: Gains
+            odometries: Each[Reads[odometry_t]] = channel("*/odometry")
+        """,
+    ),
+    Broken(
         "it.yaml:1: it/a: the setting 'key' is missing; it has no default",
         "components: {it/a: {use: plan_parts:Keyed}}",
     ),
