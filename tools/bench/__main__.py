@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from tools.bench import machine, report, rotation
+from tools.bench import machine, program, report, rotation
 from tools.bench.environments import REPOSITORY
 from tools.bench.figures import Run, error_us, tick_us
 from tools.bench.own import LONG
@@ -26,8 +26,10 @@ def main(
     varied: Annotated[str, typer.Option(help="Sizes of the runs with ten reads, 64 KiB, loss; empty: none")] = "20,80",
     own: Annotated[bool, typer.Option("--own/--no-own", help="Real time, start, memory, restart of fwk too")] = True,
     rounds: Annotated[int, typer.Option(min=1, help="Number of measurements of each arrangement")] = 3,
-    seconds: Annotated[float, typer.Option(help="Longest measurement of one run")] = 2.0,
-    soak: Annotated[float, typer.Option(help="Seconds of one long run at 100 Hz; 0: none")] = 600.0,
+    seconds: Annotated[float, typer.Option(min=0.1, max=3600.0, help="Longest measurement of one run")] = 2.0,
+    soak: Annotated[
+        float, typer.Option(min=0.0, max=86400.0, help="Seconds of one long run at 100 Hz; 0: none")
+    ] = 600.0,
     quick: Annotated[bool, typer.Option("--quick", help="Two rounds, 5 and 20 components, half a second")] = False,
     json_file: Annotated[Path, typer.Option("--json", help="File for all runs")] = _JSON,
     page: Annotated[Path, typer.Option(help="Page whose tables are replaced")] = _PAGE,
@@ -41,7 +43,7 @@ def main(
     if quick:
         sizes, varied, rounds, seconds, soak = "5,20", "20", 2, 0.5, 0.0
     if render:
-        record = Record.read(json_file)
+        record = _read(json_file)
     else:
         chosen, missing = _peers(peers)
         about = {"command": _command(), **machine.describe(), "isolation": _isolation(), "rounds": str(rounds)}
@@ -52,6 +54,15 @@ def main(
     typer.echo(tables)
     if not no_page:
         report.insert(page, tables)
+
+
+def _read(json_file: Path) -> Record:
+    try:
+        return Record.read(json_file)
+    except OSError as error:
+        raise typer.BadParameter(f"--json: {json_file}: {error.strerror}; run the benchmark first") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise typer.BadParameter(f"--json: {json_file} does not hold the runs of a benchmark: {error}") from error
 
 
 def _measure(record: Record, rounds: int, seconds: float, soak_s: float, json_file: Path) -> None:
@@ -81,9 +92,12 @@ def _peers(names: str) -> tuple[list[Peer], dict[str, str]]:
 
 def _numbers(words: str) -> tuple[int, ...]:
     try:
-        return tuple(int(word) for word in words.split(",") if word)
-    except ValueError as error:
-        raise typer.BadParameter(f"'{words}': numbers separated by commas, for example 5,20,40") from error
+        numbers = tuple(int(word) for word in words.split(",") if word)
+    except ValueError:
+        numbers = (0,)
+    if not all(number >= 1 for number in numbers):
+        raise typer.BadParameter(f"'{words}': numbers from 1, separated by commas, for example 5,20,40")
+    return numbers
 
 
 def _figure(run: Run) -> str:
@@ -107,4 +121,4 @@ def _command() -> str:
 
 
 if __name__ == "__main__":
-    typer.run(main)
+    program.run(main)

@@ -12,6 +12,7 @@ from typing import Annotated
 import typer
 
 from fwk.testing import MemorySystem, system_of
+from tools.bench import program
 
 _WARM_UP = 40
 FRAMEWORK = "framework"
@@ -62,4 +63,4 @@ def _main(
 
 
 if __name__ == "__main__":
-    typer.run(_main)
+    program.run(_main)

@@ -24,10 +24,12 @@ from typing import Annotated
 import typer
 from playwright.sync_api import Page, sync_playwright
 
+from fwk.cli import arguments
 from fwk.control.address import supervisor_address
 from fwk.control.client import Client, ControlError
+from fwk.plan.load import load_plan
 from fwk.web.background import continue_in_background
-from tools.bench import accounting
+from tools.bench import accounting, program
 from tools.bench.driver import RunFailedError
 from tools.bench.environments import REPOSITORY
 from tools.bench.timing import now_us, sleep_s
@@ -103,16 +105,23 @@ class Processes:
                 os.kill(pid, number)
 
 
+def _pace(text: str) -> str:
+    """Refuses what is not a pace."""
+    arguments.speed(text)
+    return text
+
+
 def main(
     pairs: Annotated[int, typer.Option(min=1, help="Number of pairs of windows")] = 10,
-    seconds: Annotated[float, typer.Option(min=0.5, help="Length of a window")] = 3.0,
+    seconds: Annotated[float, typer.Option(min=0.5, max=3600.0, help="Length of a window")] = 3.0,
     launch: Annotated[str, typer.Option(help="Launch file")] = "soccer-percepts.yaml",
-    speed: Annotated[str, typer.Option(help="Logical seconds per wall second, or max")] = "max",
+    speed: Annotated[str, typer.Option(callback=_pace, help="Logical seconds per wall second, or max")] = "max",
     pages: Annotated[str, typer.Option(help="Pages of the console that are open")] = "/view,/",
 ) -> None:
     """Prints the ratios; exit code 1 if the CPU time of a tick grows by more than 5 %, or, with no page open here, wall
     time.
     """
+    load_plan(launch)  # names the mistakes of the launch file
     continue_in_background()  # in a session of its own, whose niceness the terminal does not inherit
     with (
         TemporaryDirectory(prefix="bench-") as home,
@@ -286,4 +295,4 @@ def _drawings(page: Page) -> int:
 
 
 if __name__ == "__main__":
-    typer.run(main)
+    program.run(main)

@@ -1,14 +1,20 @@
 """A launch file whose components do nothing: python -m tools.bench.idle soccer-percepts.yaml --speed max --ticks 400.
 
-Takes the words of `fwk-launch`. Processes, channels, stages and ticks are those of the launch file, but no component
-initializes itself, and each iteration writes one empty message. What is left is the least that so many processes need,
-whatever their components do: no match can be faster.
+Takes the words of `fwk-launch`; without `--ticks` and `--time` it ends after 400 ticks, without `--speed` it goes as
+fast as it can. Processes, channels, stages and ticks are those of the launch file, but no component initializes itself,
+and each iteration writes one empty message. What is left is the least that so many processes need, whatever their
+components do: no match can be faster.
 """
+
+import sys
+from collections.abc import Sequence
 
 from fwk.cli import launch
 from fwk.component.channels import Writes
 from fwk.engine.runner import Runner
 from fwk.model.service_channels import is_of_service
+
+_TICKS = "400"
 
 
 def _nothing() -> None:
@@ -24,8 +30,19 @@ def _init(runner: Runner) -> None:
     methods["config_changed"] = methods["finalize"] = _nothing
 
 
+def words_of_run(given: Sequence[str]) -> list[str]:
+    """Returns the words of `fwk-launch`, with an end and a pace where they lack one."""
+    options = {word.partition("=")[0] for word in given}
+    end = () if options & {"--ticks", "--time"} else ("--ticks", _TICKS)
+    pace = () if "--speed" in options else ("--speed", "max")
+    return [*given, *end, *pace]
+
+
 def main() -> None:
     """Runs the launch file; its hosts are forked from this process, and so do nothing."""
+    if "--help" in sys.argv:
+        print(__doc__)
+    sys.argv[1:] = words_of_run(sys.argv[1:])
     setattr(Runner, "init", _init)  # noqa: B010 - mypy refuses an assignment to a method
     launch.main()
 

@@ -6,6 +6,7 @@ import venv
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from fwk.program import BAD_INPUT, complain
 from tools.bench import ros_build
 from tools.bench.environments import ALL, ROS, Environment
 
@@ -13,6 +14,10 @@ from tools.bench.environments import ALL, ROS, Environment
 def main() -> int:
     """Installs every environment (or those named on the command line); names each that failed and continues."""
     wanted = sys.argv[1:] or [environment.name for environment in ALL]
+    known = [environment.name for environment in ALL]
+    if unknown := [name for name in wanted if name not in known]:
+        complain(f"no environment '{unknown[0]}'; there are {', '.join(known)}")
+        return BAD_INPUT
     failed = 0
     for environment in ALL:
         if environment.name not in wanted:

@@ -1,11 +1,12 @@
 """Measures the physics of a match alone: `python -m tools.bench.physics` prints its speed."""
 
-import argparse
 import itertools
 import math
 import time
+from typing import Annotated
 
 import numpy as np
+import typer
 
 from procs.model.kinematics import Velocity, wheels_of
 from procs.model.robot import PLAYERS, ROBOT
@@ -13,6 +14,7 @@ from procs.simulation.physics.kick_mechanism import KickerCommand
 from procs.simulation.physics.realism import noise_of
 from procs.simulation.physics.settings import PhysicsSettings
 from procs.simulation.physics.world import World
+from tools.bench import program
 
 _TICK_US = 50_000
 _STEPS_S = (0.005, 0.002)
@@ -48,20 +50,19 @@ def seconds_of(step_s: float, match_s: float, fight: bool) -> float:
     return took_s
 
 
-def main() -> None:
+def main(
+    seconds: Annotated[float, typer.Option(min=0.05, max=3600.0, help="Duration of a match")] = 20.0,
+    rounds: Annotated[int, typer.Option(min=1, help="Matches of each size of step; the fastest counts")] = 5,
+) -> None:
     """Prints the least processor time of each size of step."""
-    words = argparse.ArgumentParser(description=__doc__)
-    words.add_argument("--seconds", type=float, default=20.0, help="duration of a match; default 20")
-    words.add_argument("--rounds", type=int, default=5, help="matches of each size of step; the fastest counts")
-    asked = words.parse_args()
     for step_s, fight in itertools.product(_STEPS_S, (False, True)):
-        took_s = min(seconds_of(step_s, asked.seconds, fight) for _ in range(asked.rounds))
+        took_s = min(seconds_of(step_s, seconds, fight) for _ in range(rounds))
         play = "two robots fight for the ball" if fight else "no robot is at the ball"
         print(
             f"steps of {step_s * 1000:g} ms, {play}: "
-            f"{asked.seconds / took_s:.1f} times real time, {took_s / (asked.seconds / step_s) * 1e6:.1f} us a step"
+            f"{seconds / took_s:.1f} times real time, {took_s / (seconds / step_s) * 1e6:.1f} us a step"
         )
 
 
 if __name__ == "__main__":
-    main()
+    program.run(main)

@@ -12,8 +12,10 @@ import psutil
 import typer
 
 from fwk.bus.sockets import multicast_receiver
+from fwk.cli.arguments import Hosting
+from fwk.plan.load import load_plan
 from lcmtypes.core import tick_record_t
-from tools.bench import accounting
+from tools.bench import accounting, program
 from tools.bench.own_driver import PORTS, launched, next_message
 from tools.bench.timing import now_us
 
@@ -72,9 +74,10 @@ def _spent_ms(launcher: int) -> dict[int, tuple[str, float]]:
 def _main(
     launch: Annotated[str, typer.Argument(help="Launch file")] = "soccer.yaml",
     ticks: Annotated[int, typer.Option(min=1, help="Ticks that are measured")] = 200,
-    hosting: Annotated[str, typer.Option(help="How components share processes")] = "process",
+    hosting: Annotated[Hosting, typer.Option(help="How components share processes")] = Hosting.PROCESS,
 ) -> None:
     """Prints the CPU time of the processes in a tick; those of one name are added up."""
+    load_plan(launch)  # names the mistakes of the launch file
     spent, tick_ms = cpu_ms(launch, ticks, hosting)
     processes = sum(each.processes for each in spent.values())
     everything = Spent(processes, sum(each.total_ms for each in spent.values()))
@@ -84,4 +87,4 @@ def _main(
 
 
 if __name__ == "__main__":
-    typer.run(_main)
+    program.run(_main)
