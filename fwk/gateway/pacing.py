@@ -25,7 +25,7 @@ the groups of that time, not more.
 QUEUE_MAX = 65_536
 """Largest number of waiting datagrams, some 30 MB of small messages; the excess leaves at once.
 
-Room for what a run at full speed writes in half a minute: three listeners beside 104 processes on two cores take that
+Room for what a run at full speed writes in half a minute: three listeners beside 104 hosts on two cores take that
 long to catch up.
 """
 LONGEST_US = 250_000

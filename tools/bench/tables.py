@@ -130,4 +130,4 @@ def start_table(runs: Runs, scenarios: Sequence[OwnScenario]) -> str:
             cell = "-" if spread is None else f"{spread.middle:{form}} ({spread.low:{form}}-{spread.high:{form}})"
             row.append(cell)
         rows.append(row)
-    return markdown(["launch file", "processes", "first tick, s", "PSS, MB", "component restarted, s"], rows)
+    return markdown(["launch file", "all processes", "first tick, s", "PSS, MB", "component restarted, s"], rows)
