@@ -1,9 +1,11 @@
 """Campaigns: many seeded runs at the same time, with a file for each result; an interrupted campaign resumes."""
 
+import errno
 import fcntl
 import json
 import os
 import re
+import stat
 from collections import defaultdict
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError, Executor, Future, as_completed
@@ -35,6 +37,9 @@ _ABSENT = "there is none"
 _UNKNOWN_TO_JSON = {"Infinity": "1e999", "-Infinity": "-1e999", "NaN": "null"}
 """Values that JSON lacks, as Python writes them, and their JSON: readers take `1e999` for infinity."""
 _TEXT_OR_UNKNOWN = re.compile(r'"(?:[^"\\]|\\.)*"|-?Infinity|NaN')
+_CURES = dict.fromkeys((errno.ENOSPC, errno.EDQUOT), "make room for it there, or ") | dict.fromkeys(
+    (errno.EACCES, errno.EPERM), "allow yourself to write there, or "
+)
 _EMPTY: tuple[Any, ...] = ("", {}, [])
 """Values without a measurement."""
 
@@ -334,12 +339,18 @@ def _read(file: Path) -> bytes | None:
     Raises:
         FolderError: the file cannot be read.
     """
+    reason = "it is no file"
     try:
-        return file.read_bytes()
+        kind = file.stat().st_mode
+        if stat.S_ISREG(kind) or stat.S_ISDIR(kind):  # any other, such as a pipe or a device, may never end
+            return file.read_bytes()
     except FileNotFoundError:
-        return None
+        if not file.is_symlink():
+            return None
+        reason = f"it is a link to {file.readlink()}, which does not exist"
     except OSError as error:
-        raise FolderError(f"{file} cannot be read: {error.strerror}; move it away, or choose another folder") from error
+        reason = f"{error.strerror}"
+    raise FolderError(f"{file} cannot be read: {reason}; move it away, or choose another folder")
 
 
 def _write(file: Path, text: str) -> None:
@@ -356,8 +367,8 @@ def _write(file: Path, text: str) -> None:
             os.fsync(opened.fileno())
         partial.replace(file)
     except OSError as error:
-        cure = "make room for it there, or choose another folder"
-        raise FolderError(f"{file} cannot be written: {error.strerror}; {cure}") from error
+        cure = _CURES.get(error.errno or 0, "")
+        raise FolderError(f"{file} cannot be written: {error.strerror}; {cure}choose another folder") from error
     finally:  # also after Ctrl-C in the middle
         with suppress(OSError):
             partial.unlink()
