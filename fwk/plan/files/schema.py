@@ -94,7 +94,7 @@ class ComponentEntry(_Entry):
     """Port to channel or pattern, where it differs from the class."""
     stage: Words | None = None
     """Stages, where they differ from those of the class."""
-    every: Annotated[int, Field(ge=1, le=EVERY_MAX), WrapValidator(_whole_turns)] | None = None
+    every: Annotated[int, Field(strict=True, ge=1, le=EVERY_MAX), WrapValidator(_whole_turns)] | None = None
     """Iterates in one of `every` ticks, where the number differs from the class."""
     offset: Scalar | None = None
     """Shifts these ticks: it iterates when tick and offset have the same remainder modulo `every`."""

@@ -75,12 +75,16 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """
         it.yaml:2: 'components.a/a.every' is 'two'; it should be a whole number from 1 to 1000000
         it.yaml:3: 'components.b/b.every' is 0; it should be a whole number from 1 to 1000000
-        it.yaml:4: it/c: 'limits.turns' is [1, 2, 3]; it should have at most 2 values
+        it.yaml:4: 'components.c/c.every' is 2.0; it should be a whole number from 1 to 1000000
+        it.yaml:5: 'components.d/d.every' is '2'; it should be a whole number from 1 to 1000000
+        it.yaml:6: it/c: 'limits.turns' is [1, 2, 3]; it should have at most 2 values
         """,
         """
         components:
           a/a: {use: plan_parts:Odometer, every: two}
           b/b: {use: plan_parts:Odometer, every: 0}
+          c/c: {use: plan_parts:Odometer, every: 2.0}
+          d/d: {use: plan_parts:Odometer, every: "2"}
           it/c: {use: plan_parts:Wheels, config: {limits: {turns: [1, 2, 3]}}}
           it/pilot: {use: plan_parts:Pilot}
         """,

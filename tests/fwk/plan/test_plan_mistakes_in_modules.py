@@ -106,6 +106,8 @@ such as 1 or '{number}'
         it.yaml:11: it/j: offset is 'one'; it should be a whole number from 0 on, of at most 6 digits, \
 such as 1 or '{number}'
         it.yaml:12: it/k: it is continuous and takes part in no tick; leave 'offset' out
+        it.yaml:13: it/l: offset is '1.0'; it should be a whole number from 0 on, of at most 6 digits, \
+such as 1 or '{number}'
         """,
         """
         components:
@@ -120,6 +122,7 @@ such as 1 or '{number}'
           it/i: {use: restless:Staged, every: 2, offset: -1}
           it/j: {use: restless:Staged, offset: one}
           it/k: {use: restless:Right, offset: 2}
+          it/l: {use: restless:Staged, every: 2, offset: 1.0}
         --- restless.py
         from fwk import Component, Image, TimeSource
         class Both(Component):
