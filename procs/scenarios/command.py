@@ -78,25 +78,37 @@ def _play_once(scenarios: Mapping[Path, Scenario]) -> int:
 
 
 def _play_often(paths: Sequence[Path], seeds: range) -> int:
-    """Plays every scenario with every seed; prints how often each succeeds, and what each seed broke."""
+    """Plays every scenario with every seed; prints how often each succeeds, and what each seed broke.
+
+    A scenario with a mistake that only the run shows is not counted.
+    """
     runs = [(path, seed) for path in paths for seed in seeds]
     stems = [path.stem for path in paths]
     names = {path: path.stem if stems.count(path.stem) == 1 else str(path) for path in paths}
+    mistakes: dict[Path, str] = {}
     with executor_of(min(os.cpu_count() or 1, len(runs))) as executor:
         futures = {executor.submit(broken_in, path, seed): (path, seed) for path, seed in runs}
         for count, future in enumerate(as_completed(futures), 1):
             path, seed = futures[future]
-            if future.exception() or future.result():
+            failure = future.exception()
+            if isinstance(failure, ScenarioError | OSError):
+                if path not in mistakes:
+                    mistakes[path] = _said(failure, path)
+                    print(mistakes[path], file=sys.stderr)
+            elif failure or future.result():
                 print(f"{count} of {len(runs)}: {names[path]} failed with seed {seed}", file=sys.stderr)
         broken = {
             run: [str(failure)] if (failure := future.exception()) else future.result()
             for future, run in futures.items()
+            if run[0] not in mistakes
         }
-    print(as_text(rows_of({names[path]: [not broken[path, seed] for seed in seeds] for path in paths})))
+    whole = [path for path in paths if path not in mistakes]
+    if whole:
+        print(as_text(rows_of({names[path]: [not broken[path, seed] for seed in seeds] for path in whole})))
     for (path, seed), texts in broken.items():
         for text in texts:
             print(f"{names[path]}, seed {seed}: {text}")
-    return int(any(broken.values()))
+    return 2 if mistakes else int(any(broken.values()))
 
 
 def _seed(text: str) -> int:
