@@ -74,7 +74,7 @@ def test_robot_set_down_on_a_flying_ball_scores_no_goal(z_m: float, stays: bool)
     assert (math.dist((10.7, 0.3), (truth.ball_x_m, truth.ball_y_m)) < 0.36) is stays
 
 
-@pytest.mark.parametrize("heading_rad", [7.0, -1e6, 1e17])
+@pytest.mark.parametrize("heading_rad", [7.0, -1e6, 1e17, -1e30])
 def test_robot_that_is_set_down_with_many_turns_can_turn(heading_rad: float) -> None:
     world = bench()
     world.port("place_robot").put(robot="cyan1", x_m=1.0, y_m=-2.0, heading_rad=heading_rad)
@@ -127,6 +127,7 @@ def test_ball_is_thrown() -> None:
         ("place_robot", {"robot": "cyan7"}, "no robot 'cyan7'; there are: cyan1, magenta1"),
         ("place_robot", {"robot": "cyan1", "x_m": 13.0}, "(13, 0) is outside the walls; x is at most 12 m, y 8 m"),
         ("place_robot", {"robot": "cyan1", "heading_rad": math.nan}, "heading_rad is nan; it should be a number"),
+        ("place_robot", {"robot": "cyan1", "heading_rad": -math.inf}, "heading_rad is -inf; it should be a number"),
         ("place_ball", {"y_m": math.inf}, "(0, inf) is outside the walls; x is at most 12 m, y 8 m"),
         ("place_ball", {"vx_m_s": 99.0}, "vx_m_s is 99.0; it should be from -15 to 15"),
         ("place_ball", {"vz_m_s": -99.0}, "vz_m_s is -99.0; it should be from -15 to 15"),
