@@ -1,6 +1,7 @@
 """Self-localization by 200 particles, in the place of the component `localization` or beside it."""
 
 import numpy as np
+from pydantic import Field as Setting
 
 from fwk import Component, Config, Reads, Writes
 from lcmtypes.robot import imu_t, odometry_t
@@ -19,7 +20,7 @@ _POINTS = 60
 class ParticleLocalizationConfig(Config):
     """Settings of the particles."""
 
-    field: Field = Field()
+    field: Field = Setting(Field(), frozen=True)
     """Measures of the field."""
 
 
