@@ -25,7 +25,7 @@ from procs.simulation.simulator import SimulatorConfig
 BOOK = Path(__file__).parent / "book"
 """Folder of the scenarios that come with the robots."""
 _BALL_S = 0.1
-_LONGEST = 100_000
+LONGEST = 100_000
 """Letters of a file at most: a match waits while its crew reads one."""
 _Number = Annotated[FiniteFloat, Strict()]
 
@@ -95,8 +95,8 @@ def parsed(text: str, where: str, further: Check = _nothing, last: Check = _noth
     Raises:
         ScenarioError: the text is not a scenario; the error has a line for each mistake.
     """
-    if len(text) > _LONGEST:
-        raise ScenarioError(f"{where}: it has {len(text):,} letters; a scenario has {_LONGEST:,} at most")
+    if len(text) > LONGEST:
+        raise ScenarioError(f"{where}: it has {len(text):,} letters; a scenario has {LONGEST:,} at most")
     try:
         document = Document(text, where)
         scenario = document.values(Scenario)

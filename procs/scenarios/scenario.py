@@ -19,7 +19,7 @@ from procs.model.robot import team_of
 from procs.referee.referee import Referee
 from procs.scenarios.crew import Crew
 from procs.scenarios.dummy import Dummy
-from procs.scenarios.file import Scenario, ScenarioError, parsed
+from procs.scenarios.file import LONGEST, Scenario, ScenarioError, parsed
 from procs.scenarios.perfect_world import PerfectWorldModel
 from procs.scenarios.words import WORDS
 from procs.simulation.percepts import Percepts
@@ -43,6 +43,8 @@ _SEEING: dict[str, type[Component]] = {
     "localization": Localization,
     "world_model": WorldModel,
 }
+_LETTERS = 10 * LONGEST
+"""Most letters of a file that are read, so that the error names the length of a file that is only somewhat too long."""
 _RADIO = {"messages": "{team}*/team_message", "inboxes": "{team}*/team_inbox"}
 
 
@@ -54,9 +56,12 @@ def read(path: Path) -> Scenario:
         OSError: the file cannot be read.
     """
     try:
-        text = path.read_text()
+        with open(path, encoding="utf-8") as file:
+            text = file.read(_LETTERS + 1)  # a device such as /dev/zero has no end
     except UnicodeDecodeError as error:
         raise ScenarioError(f"{path}: it is not UTF-8 text") from error
+    if len(text) > _LETTERS:
+        raise ScenarioError(f"{path}: it has more than {_LETTERS:,} letters; a scenario has {LONGEST:,} at most")
     return parsed(text, str(path), _check, _check_run)
 
 

@@ -273,6 +273,12 @@ def test_file_of_bytes_is_not_a_scenario(tmp_path: Path) -> None:
         run(path)
 
 
+@pytest.mark.timeout(60)
+def test_device_without_an_end_is_not_a_scenario() -> None:
+    with pytest.raises(ScenarioError, match=r"/dev/zero: it has more than 1,000,000 letters; a scenario has 100,000"):
+        run(Path("/dev/zero"))
+
+
 def test_all_mistakes_of_all_files_come_at_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
