@@ -21,6 +21,7 @@ from fwk.plan.files.source import read_value
 from fwk.program import BAD_INPUT
 
 _NO_FIELD = "'{}' is not FIELD=VALUE; write for example x_m=1.5, or xs=[1, 2]"
+_LETTERS_MAX = 1_000_000
 _NUMBERS = {*INTEGERS, "float", "double"}
 
 Fields = Annotated[
@@ -90,7 +91,7 @@ def made(type_name: str, fields: list[str]) -> Any:
 
     Raises:
         MessageError: no such type or field, one that is given twice, a file that cannot be read, or a value that is
-            not YAML.
+            not YAML or does not fit.
     """
     message: Any = messages.type_named(type_name)()
     given: set[str] = set()
@@ -109,7 +110,10 @@ def made(type_name: str, fields: list[str]) -> Any:
         known = list(getattr(target, "__slots__", ()))
         if last not in known:
             raise MessageError(f"{type_name} has no field '{path}'; {hint(last, known)}")
-        kind = target.__typenames__[known.index(last)]
+        place = known.index(last)
+        kind = target.__typenames__[place]
+        if kind == "string" and target.__dimensions__[place] is None and not isinstance(value, str):
+            value = typed  # a text that looks like a number, a truth value or a mapping
         setattr(target, last, _fitting(value, kind, path))
     return message
 
@@ -135,14 +139,18 @@ def _content(path: str, file: str) -> str:
     """Returns the text of a file that `FIELD=@FILE` names.
 
     Raises:
-        MessageError: it cannot be read.
+        MessageError: it cannot be read, or is too long.
     """
     try:
-        return Path(file).read_text()
+        with open(file, encoding="utf-8") as opened:
+            text = opened.read(_LETTERS_MAX + 1)  # a device such as /dev/zero has no end
     except OSError as error:
         raise MessageError(f"{path}: {file}: {error.strerror}") from error
     except ValueError as error:  # no UTF-8, or no name of a file
         raise MessageError(f"{path}: {file}: {error}") from error
+    if len(text) > _LETTERS_MAX:
+        raise MessageError(f"{path}: {file}: more than {_LETTERS_MAX:,} letters are too many for a message")
+    return text
 
 
 def _fitting(value: Any, kind: str, path: str) -> Any:

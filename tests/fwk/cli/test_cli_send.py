@@ -36,12 +36,20 @@ def test_values_that_do_not_fit_are_named(fields: list[str], error: str) -> None
         made("robot.motor_command_t", fields)
 
 
+@pytest.mark.parametrize("typed", ["5", "1e3", "on", "null", "", "{}", "[a, b]", "dummies: [cyan2]"])
+def test_text_need_not_be_quoted(typed: str) -> None:
+    assert made("soccer.play_scenario_t", [f"text={typed}"]).text == typed
+    assert made("soccer.play_scenario_t", [f"text='{typed}'"]).text == typed
+
+
 def test_text_of_a_file_is_taken_as_it_is(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text("# A shot.\nball: {x_m: 1.0}\n")
     assert made("soccer.play_scenario_t", [f"text=@{file}"]).text == file.read_text()
     with pytest.raises(MessageError, match=re.escape(f"text: {tmp_path}/no.yaml: No such file or directory")):
         made("soccer.play_scenario_t", [f"text=@{tmp_path}/no.yaml"])
+    with pytest.raises(MessageError, match="/dev/zero: more than 1,000,000 letters are too many for a message"):
+        made("soccer.play_scenario_t", ["text=@/dev/zero"])
     file.write_bytes(b"\xff")
     with pytest.raises(MessageError, match=r"mine\.yaml: .*utf-8"):
         made("soccer.play_scenario_t", [f"text=@{file}"])
