@@ -7,6 +7,7 @@ import argparse
 import json
 import tempfile
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar
 
@@ -38,6 +39,7 @@ _PICTURES = "sight/pictures"
 _LAUNCH = "include: {file}\nname: sight\ncomponents: {{{name}: {{use: procs.view.pictures, config: {config}}}}}\n"
 _DETECTOR = "omni_ball"
 """Component of a robot whose settings tell mirror and ball."""
+_LONGEST_S = 3600.0
 _SUFFIXES = (".png", ".jpg")
 _FINE = "{format: png, rate_hz: 0}"
 
@@ -109,14 +111,27 @@ def _included(launch: str) -> str:
     return next((str(place.absolute()) for place in places if place.is_file()), launch)
 
 
+def _time_s(text: str) -> float:
+    with suppress(ValueError):
+        if 0.0 <= (time_s := float(text)) <= _LONGEST_S:
+            return time_s
+    raise argparse.ArgumentTypeError(f"'{text}' is not a time; use seconds from 0 to {_LONGEST_S:g}")
+
+
+def _seed(text: str) -> int:
+    if not (text.isascii() and text.isdecimal()):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a seed; use a whole number from 0")
+    return int(text)
+
+
 def main() -> None:
     """Plays the beginning of a match and writes the picture."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("file", type=Path, help="picture to write, .png or .jpg")
     parser.add_argument("--launch", default="soccer.yaml", help="launch file; default: soccer.yaml")
     parser.add_argument("--robot", default=_ROBOT, help=f"robot whose camera is shown; default: {_ROBOT}")
-    parser.add_argument("--time", type=float, default=9.0, help="logical time in s; default: 9")
-    parser.add_argument("--seed", type=int, default=7, help="seed of the match; default: 7")
+    parser.add_argument("--time", type=_time_s, default=9.0, help="logical time in s; default: 9")
+    parser.add_argument("--seed", type=_seed, default=7, help="seed of the match; default: 7")
     asked = parser.parse_args()
     if asked.file.suffix not in _SUFFIXES:
         raise SystemExit(f"'{asked.file}' ends in '{asked.file.suffix}'; it should end in {' or '.join(_SUFFIXES)}")

@@ -90,6 +90,24 @@ def test_command_says_what_is_wrong(words: list[str], mistake: str, monkeypatch:
     assert mistake in str(raised.value)
 
 
+@pytest.mark.parametrize(
+    ("words", "mistake"),
+    [
+        (["--time", "inf"], "'inf' is not a time; use seconds from 0 to 3600"),
+        (["--time", "nan"], "'nan' is not a time"),
+        (["--time", "-1"], "'-1' is not a time"),
+        (["--seed", "-1"], "'-1' is not a seed; use a whole number from 0"),
+    ],
+)
+def test_command_refuses_numbers_without_a_meaning(
+    words: list[str], mistake: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["sight_picture", "sight.png", "--launch", "nowhere.yaml", *words])
+    with pytest.raises(SystemExit, match="2"):
+        sight_picture.main()
+    assert mistake in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("launch", ["my own.yaml", "./my own.yaml", "parts/mine.yaml", "there.yaml"])
 def test_command_takes_launch_files_of_the_user(launch: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """They are given by their paths, or lie in `launch/`."""
