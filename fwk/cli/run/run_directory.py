@@ -19,6 +19,8 @@ IN_USE = "in-use"
 GB = 1_000_000_000
 KEEP = "keep"
 """File that protects a run directory from automatic removal."""
+_LETTERS_MAX = 50
+"""Letters of a run's name that its directory has at most: names of files have 255 bytes."""
 _NAME = re.compile(r"\d{4}-\d\d-\d\dT\d\d-\d\d-\d\d-(.+)-\d+", re.ASCII)
 
 
@@ -44,7 +46,7 @@ def make_run_dir(name: str, runs: Path | None = None) -> Path:
         RunDirError: the folder cannot be created.
     """
     when = datetime.fromtimestamp(wall_us() / US_PER_S, UTC).astimezone().strftime("%Y-%m-%dT%H-%M-%S")
-    word = re.sub(r"[^\w.-]+", "_", name) or "run"
+    word = re.sub(r"[^\w.-]+", "_", name)[:_LETTERS_MAX] or "run"
     parent = runs or Path.home() / RUNS
     folder = parent / f"{when}-{word}-{os.getpid()}"
     try:

@@ -101,6 +101,14 @@ def test_a_directory_is_found_by_its_listed_name(tmp_path: Path, monkeypatch: py
     assert named(Path(made.name)) == Path(made.name)
 
 
+def test_long_name_of_a_run_is_shortened(tmp_path: Path) -> None:
+    """Names of files have 255 bytes at most, and a letter has four at most."""
+    made = make_run_dir("\N{EARTH GLOBE EUROPE-AFRICA}a" * 200, tmp_path)
+    assert [found.path for found in run_dirs(tmp_path)] == [made]
+    made = make_run_dir("\N{OLD PERSIAN SIGN A}" * 200, tmp_path)
+    assert made.is_dir()
+
+
 def test_a_new_directory_is_in_use(tmp_path: Path) -> None:
     made = make_run_dir("match", tmp_path / "runs")
     (found,) = run_dirs(tmp_path / "runs")
