@@ -40,11 +40,11 @@ class WorldModelConfig(Config):
     """An opponent is forgotten after this time without a sighting."""
     mate_timeout_s: float = Setting(default=5.0, gt=0.0)
     """A mate is forgotten after this time without a message."""
-    mate_radius_m: float = Setting(default=0.5, gt=0.0)
+    mate_radius_m: float = Setting(default=0.5, gt=0.0, le=100.0)
     """An obstacle this near to a mate is that mate; one further away is, too, if its place is uncertain enough."""
-    obstacle_deviation_m: float = Setting(default=0.4, gt=0.0)
+    obstacle_deviation_m: float = Setting(default=0.4, gt=0.0, le=100.0)
     """Obstacles seen with a larger standard deviation are not used."""
-    border_m: float = Setting(default=0.7, ge=0.0)
+    border_m: float = Setting(default=0.7, ge=0.0, le=100.0)
     """Obstacles further outside the field than this are not robots of the match."""
     use_team_sight: bool = True
     """Use the sightings of mates."""
@@ -54,18 +54,18 @@ class WorldModelConfig(Config):
     """Publish the velocity of the ball; false, for comparison: the ball always seems to rest."""
     message_period_s: float = Setting(default=0.1, gt=0.0)
     """Time from one message to the team to the next; messages go with the nearest frame of the camera."""
-    sight_correlation: float = Setting(default=1.0, ge=1.0)
+    sight_correlation: float = Setting(default=1.0, ge=1.0, le=1e6)
     """Number of frames that share one error of the camera; multiplies the covariance of sightings."""
     realism: Realism = "realistic"
     """Shaking of the mirror that covariances allow for: none, friendly, realistic or harsh."""
-    ball_shake_s_m: float | None = Setting(default=None, ge=0.0)
+    ball_shake_s_m: float | None = Setting(default=None, ge=0.0, le=100.0)
     """Growth of a ball's deviation for each m/s of the robot, as a share of what its percept states; null: by
     `realism`."""
-    robot_shake_s_m: float | None = Setting(default=None, ge=0.0)
+    robot_shake_s_m: float | None = Setting(default=None, ge=0.0, le=100.0)
     """The same of another robot's."""
-    pose_correlation: float = Setting(default=2.0, ge=1.0)
+    pose_correlation: float = Setting(default=2.0, ge=1.0, le=1e6)
     """Number of frames that share one error of the own pose; multiplies the covariance that the pose adds."""
-    team_correlation: float = Setting(default=1.0, ge=1.0)
+    team_correlation: float = Setting(default=1.0, ge=1.0, le=1e6)
     """Number of messages of a mate that share one error; multiplies the covariance of its sightings."""
 
     def age_s(self, capture_us: int, now_us: int) -> float:
