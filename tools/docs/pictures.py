@@ -17,9 +17,10 @@ from fwk.cli.recordings.user_folders import use_folders
 from fwk.display.screen import screen
 from fwk.display.view import STATUS_CHANNEL, View
 from fwk.lcm import messages
+from fwk.lcm.log_file import LogError
 from fwk.lcm.stamped_log import StampedLog
 from fwk.lcm.type_registry import header_of
-from fwk.recording.replay.recording import Recording
+from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.video import drawing
 from lcmtypes.core import status_t
 
@@ -34,7 +35,10 @@ def main() -> None:
     parser.add_argument("log", type=Path, help="recording of a match")
     parser.add_argument("--tick", type=int, default=1_000_000, help="the tick to draw; default: the last")
     arguments = parser.parse_args()
-    plan = Recording(arguments.log).plan
+    try:
+        plan = Recording(arguments.log).plan
+    except (LogError, RecordingError) as error:
+        parser.error(str(error))
     use_folders(plan.folders)
     view = View(plan)
     for packet in packets(arguments.log, arguments.tick):
