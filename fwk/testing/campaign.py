@@ -81,7 +81,7 @@ class Evaluation:
         except CampaignError:
             raise
         except Exception as error:  # of any kind; some do not reach another process, alone or as a cause
-            failure = _failure(error)
+            failure = failure_of(error)
         raise CampaignError(failure)
 
 
@@ -273,8 +273,8 @@ def _outcome(future: Future[Any]) -> tuple[str, str]:
     return "", ": ".join(filter(None, (type(error).__name__, _short(str(error)))))
 
 
-def _failure(error: Exception) -> str:
-    """Returns an exception of a run with its place, and with the component that raised it if one did.
+def failure_of(error: Exception) -> str:
+    """Returns an exception of an application with its place, and with the component that raised it if one did.
 
     The tick is left out, so that runs that fail at the same place have the same cause.
     """

@@ -24,7 +24,7 @@ from fwk.plan.files.launch_file import FOLDER, INSTALLED
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.what_ran import imported_modules
 from fwk.program import BAD_INPUT, FAILED
-from fwk.testing.campaign import Campaign, Evaluation, FolderError, listed
+from fwk.testing.campaign import Campaign, Evaluation, FolderError, failure_of, listed
 from fwk.testing.executors import CampaignError, executor_of
 from fwk.testing.seeds import seeds_of
 
@@ -94,8 +94,8 @@ def eval(  # noqa: A001 - the name of the command
     about = {"file": os.path.normpath(plan.file), "time_s": time_s, "by": plan.evaluation, "plan": _digest(plan)}
     work = Evaluation(plan.evaluation, plan.folders, tuple(sets or ()), modules if cluster else {})
     try:
+        code = _short(sorted((modules | _inputs(plan)).items()))
         with _refused_by(folder):
-            code = _short(sorted((modules | _inputs(plan)).items()))
             campaign = Campaign(folder, about | ({"sets": sets} if sets else {}), code, _flaw_in(plan))
             former = campaign.of_other_code(numbers)
         if former:
@@ -107,8 +107,9 @@ def eval(  # noqa: A001 - the name of the command
         failure = _play(campaign, work, _file_for_runs(plan, cluster), time_s, numbers, executor)
         results, text = campaign.results(numbers), ""
         if results:
+            report = _own(plan, "report", f"; the results of the runs stay in {folder}")
             with _refused_by(folder):
-                text = import_module(plan.evaluation.partition(":")[0]).report(results, folder)
+                text = report(results, folder)
     except CampaignError as error:
         typer.echo(f"error: {error}", err=True)
         raise typer.Exit(BAD_INPUT if isinstance(error, FolderError) else FAILED) from error
@@ -212,17 +213,39 @@ def _modules(plan: Plan) -> dict[str, str]:
 
 
 def _inputs(plan: Plan) -> dict[str, str]:
-    """Returns the hashes of the files that the module of the evaluation names in `INPUTS`."""
-    module = sys.modules.get(plan.evaluation.partition(":")[0])
-    files: Sequence[Path] = getattr(module, "INPUTS", ())
-    return {str(file): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+    """Returns the hashes of the files that the module of the evaluation names in `INPUTS`.
+
+    Raises:
+        Exit: one of them cannot be read.
+    """
+    name = plan.evaluation.partition(":")[0]
+    files: Sequence[Path | str] = getattr(sys.modules.get(name), "INPUTS", ())
+    try:
+        return {str(file): hashlib.sha256(Path(file).read_bytes()).hexdigest() for file in files}
+    except OSError as error:
+        raise _bad_input(f"{error.filename}, one of the INPUTS of {name}: {error.strerror}") from error
 
 
 def _flaw_in(plan: Plan) -> Callable[[Any], str]:
     """Returns `flaw_in` of the module of the evaluation; without one each result is accepted."""
     module = sys.modules.get(plan.evaluation.partition(":")[0])
-    found: Callable[[Any], str] = getattr(module, "flaw_in", lambda _: "")
-    return found
+    return _own(plan, "flaw_in") if hasattr(module, "flaw_in") else lambda _: ""
+
+
+def _own(plan: Plan, name: str, cure: str = "") -> Callable[..., str]:
+    """Returns a function of the evaluation's module; its errors, except `OSError`, become a `CampaignError`."""
+    module = plan.evaluation.partition(":")[0]
+
+    def called(*words: Any) -> str:
+        try:
+            answer: str = getattr(import_module(module), name)(*words)
+        except OSError:  # of the folder
+            raise
+        except Exception as error:
+            raise CampaignError(f"{module}.{name} failed: {failure_of(error)}{cure}") from error
+        return answer
+
+    return called
 
 
 def _formerly(seeds: Sequence[int]) -> str:

@@ -3,6 +3,8 @@
 import re
 from pathlib import Path
 
+import pytest
+
 from fwk import Clock, Component
 from fwk.testing import MemorySystem
 from tests.fwk.cli.cli_eval_parts import Idle
@@ -42,3 +44,38 @@ def test_failed_component_and_its_place_are_named(launch: Path) -> None:
     code, _, said = evaluated(str(launch), "--seeds", "1..3", "--jobs", "2")
     cause = r"seeds 1, 2, 3: it/crash: UnpicklableError: no way \(.*/test_cli_eval_failing\.py:\d+\)"
     assert (code, bool(re.search(f"error: 3 of 3 runs failed: {cause}\n", said))) == (1, True)
+
+
+OWN = """
+def measured(file, time_s, seed):
+    return {"a": 1}
+def report(results, folder):
+    return "table"
+"""
+
+
+@pytest.mark.parametrize(
+    ("module", "line", "code", "said"),
+    [
+        (
+            "own_report",
+            "def report(results, folder): raise ValueError('no')",
+            1,
+            r"error: own_report\.report failed: ValueError: no \(.*/own_report\.py:6\); the results .* in eval-it\n",
+        ),
+        (
+            "own_flaw",
+            "def flaw_in(result): raise KeyError('x')",
+            1,
+            r"error: own_flaw\.flaw_in failed: KeyError: 'x' \(.*/own_flaw\.py:6\)\n",
+        ),
+        ("own_path", "INPUTS = ['gone.csv']", 2, "error: gone.csv, one of the INPUTS of own_path: No such file .*\n"),
+    ],
+)
+def test_mistakes_of_the_evaluation_are_named(launch: Path, module: str, line: str, code: int, said: str) -> None:
+    (launch.parent / f"{module}.py").write_text(f"{OWN}{line}\n")
+    launch.write_text(LAUNCH.replace("tests.fwk.cli.cli_eval_parts:measured", f"{module}:measured"))
+    ended, _, errors = evaluated(str(launch), "--seeds", "1")
+    assert ended == code
+    assert re.search(said, errors)
+    assert "Traceback" not in errors
