@@ -8,6 +8,7 @@ from pydantic import AllowInfNan, BaseModel, ConfigDict, Field, Strict
 
 from fwk.testing.expression import Expression, Words
 
+_SHORTEST_S = 0.001  # the shortest tick
 _LONGEST_S = 86_400.0
 
 
@@ -24,7 +25,7 @@ class Expectations(BaseModel):
     """Each must hold in every tick."""
     at_end: list[str] = []
     """Each must hold in the last tick."""
-    time_s: Annotated[float, Field(gt=0.0, le=_LONGEST_S), AllowInfNan(False), Strict()] = 10.0
+    time_s: Annotated[float, Field(ge=_SHORTEST_S, le=_LONGEST_S), AllowInfNan(False), Strict()] = 10.0
     """Limit of the logical time. Without `always` and `at_end` a scenario ends once all the rest has happened."""
 
 

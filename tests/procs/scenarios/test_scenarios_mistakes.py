@@ -250,6 +250,11 @@ from tests.procs.scenarios.scenario_files import written
             ScenarioError,
             "no key 'commands.0.kick'; there are at_s, freeze, hold_robot, place_ball, place_robot",
         ),
+        (
+            "dummies: [cyan2]\nalways: [x(cyan2) > 0]\ntime_s: 1e-9",
+            ScenarioError,
+            "mine.yaml:3: 'time_s' is 1e-09; it should be greater than or equal to 0.001",
+        ),
         ("dummies: [yes]\nalways: ['']", ScenarioError, "mine.yaml:2: an empty condition; write such as"),
         ("dummies: [cyan2]\nalways: [1 < 2]", ScenarioError, "mine.yaml:2: '1 < 2': a fixed value is no condition"),
         (f"# {'x' * 100_000}", ScenarioError, "mine.yaml: it has 100,002 letters; a scenario has 100,000 at most"),
