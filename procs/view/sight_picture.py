@@ -5,6 +5,7 @@ The web console draws the same over live pictures.
 
 import argparse
 import json
+import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -111,6 +112,15 @@ def _included(launch: str) -> str:
     return next((str(place.absolute()) for place in places if place.is_file()), launch)
 
 
+class BadInputError(SystemExit):
+    """Ends the program with a sentence and exit code 2."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.code = 2
+        print(text, file=sys.stderr)
+
+
 def _time_s(text: str) -> float:
     with suppress(ValueError):
         if 0.0 <= (time_s := float(text)) <= _LONGEST_S:
@@ -134,9 +144,9 @@ def main() -> None:
     parser.add_argument("--seed", type=_seed, default=7, help="seed of the match; default: 7")
     asked = parser.parse_args()
     if asked.file.suffix not in _SUFFIXES:
-        raise SystemExit(f"'{asked.file}' ends in '{asked.file.suffix}'; it should end in {' or '.join(_SUFFIXES)}")
+        raise BadInputError(f"'{asked.file}' ends in '{asked.file.suffix}'; it should end in {' or '.join(_SUFFIXES)}")
     if not asked.file.absolute().parent.is_dir():
-        raise SystemExit(f"'{asked.file}' cannot be written: there is no folder '{asked.file.parent}'")
+        raise BadInputError(f"'{asked.file}' cannot be written: there is no folder '{asked.file.parent}'")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "sight.yaml"
         file.write_text(_LAUNCH.format(file=json.dumps(_included(asked.launch)), name=_PICTURES, config=_FINE))
@@ -147,18 +157,18 @@ def main() -> None:
             names = (each.name for each in launch_plan(str(file)).components)
             robots = [robot for robot, _, short in (name.rpartition("/") for name in names) if short == _DETECTOR]
             there = ", ".join(robots) or "none"
-            raise SystemExit(f"{asked.launch}: no {_DETECTOR} of {asked.robot}; robots with one: {there}") from error
+            raise BadInputError(f"{asked.launch}: no {_DETECTOR} of {asked.robot}; robots with one: {there}") from error
         except PlanError as error:
-            raise SystemExit(str(error)) from error
+            raise BadInputError(str(error)) from error
         system = system_of(str(file), seed=asked.seed)
         while system.now_us < asked.time * US_PER_S:
             system.tick()
         mirror = MirrorConfig(**settings["mirror"])
         picture = sight_in(system, asked.robot, mirror, settings["ball"]["radius_m"])
     if picture is None:
-        raise SystemExit(f"no picture of {asked.robot}/image until {asked.time:g} s; a later --time would show one")
+        raise BadInputError(f"no picture of {asked.robot}/image until {asked.time:g} s; a later --time would show one")
     if not cv2.imwrite(str(asked.file), picture):
-        raise SystemExit(f"'{asked.file}' cannot be written")
+        raise BadInputError(f"'{asked.file}' cannot be written")
 
 
 if __name__ == "__main__":

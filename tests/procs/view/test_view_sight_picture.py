@@ -83,11 +83,15 @@ def test_command_draws_the_camera_of_a_match(tmp_path: Path, monkeypatch: pytest
         ),
     ],
 )
-def test_command_says_what_is_wrong(words: list[str], mistake: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_command_says_what_is_wrong(
+    words: list[str], mistake: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.setattr("sys.argv", ["sight_picture", "--time", "0.2", *words])
     with pytest.raises(SystemExit) as raised:
         sight_picture.main()
     assert mistake in str(raised.value)
+    assert raised.value.code == 2
+    assert mistake in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
