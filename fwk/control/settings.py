@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
+from itertools import accumulate
 from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel
@@ -115,7 +116,11 @@ class RunSettings:
         """Notes that a component has these settings from now on."""
         self._values[new.component] = new.values
         self._asked.pop(new.component, None)
-        self._origins[new.component] |= dict.fromkeys(new.said, origin)
+        origins = self._origins[new.component]
+        origins |= dict.fromkeys(new.said, origin)
+        for name in new.said:  # a mapping that was empty had an origin, too; now its keys have theirs
+            for above in accumulate(name.split(".")[:-1], "{}.{}".format):
+                origins.pop(above, None)
         self._changed.add(new.component)
 
     def _check_component(self, component: ComponentPlan, layers: list[Node], problems: Problems) -> NewSettings | None:

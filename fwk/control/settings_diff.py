@@ -11,8 +11,8 @@ from fwk.plan.files.overrides import PLACE
 def differences(rows: Sequence[dict[str, Any]], plan: Plan) -> tuple[list[str], list[str]]:
     """Returns `NAME.SETTING=VALUE` for each setting of a run that differs in the freshly loaded plan.
 
-    First those that can be changed during the run, then the others. Values given with `--set` at the start of the run
-    stay.
+    First those that can be changed during the run, then the others: fixed settings, and mappings that lack a key in the
+    files, because a key stays until the run ends. Values given with `--set` at the start of the run stay.
     """
     values = {component.name: component.config for component in plan.components}
     now: list[str] = []
@@ -21,9 +21,19 @@ def differences(rows: Sequence[dict[str, Any]], plan: Plan) -> tuple[list[str], 
         name, setting = row["component"], row["setting"]
         if name not in values or row["origin"] == PLACE:
             continue
-        value: Any = values[name]
-        for key in setting.split("."):
-            value = value.get(key) if isinstance(value, dict) else None
-        if value is not None and value != row["value"]:
-            (now if row["editable"] else later).append(f"{name}.{setting}={flow(value)}")
-    return now, later
+        found, value = _found(values[name], setting)
+        if value != row["value"] and found:
+            (now if row["editable"] and found == setting else later).append(f"{name}.{found}={flow(value)}")
+    return now, list(dict.fromkeys(later))
+
+
+def _found(config: dict[str, Any], setting: str) -> tuple[str, Any]:
+    """Returns the dotted name and the value of a setting, or of the mapping that lacks it; the name may be empty."""
+    found: list[str] = []
+    value: Any = config
+    for key in setting.split("."):
+        if not isinstance(value, dict) or key not in value:
+            break
+        found.append(key)
+        value = value[key]
+    return ".".join(found), value
