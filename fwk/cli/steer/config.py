@@ -79,11 +79,11 @@ def get(
     chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
-    """Prints the value of a setting; for a pattern, a line with name and value for each match."""
+    """Prints the value of a setting; for a pattern or a mapping, a line with name and value for each match."""
     rows = _rows([path], file, chosen)
     if as_json:
         typer.echo(json.dumps(rows, indent=2))
-    elif len(rows) == 1:
+    elif [_path(row) for row in rows] == [path]:
         typer.echo(_value(rows[0]["value"]))
     else:
         for row in rows:
@@ -146,7 +146,7 @@ def reload(names: SomeSettings = None, chosen: RunChoice = None, as_json: Json =
     """Reads the launch files again and applies changed settings.
 
     Settings given with --set at the start stay; live changes that were not kept are undone. Settings that cannot be
-    changed during a run are named.
+    changed during a run are named, and so are mappings that got a key: it stays until the run ends.
     """
     with asking(), runs.supervisor(chosen) as run:
         _take_over(run, names or [], "fwk config reload", as_json)
@@ -162,9 +162,9 @@ def _take_over(run: Client, names: list[str], origin: str, as_json: bool) -> Non
         return
     for each in later:
         typer.echo(f"{each}: from the next run on")
-    if not changes:
+    if not changes and not later:
         typer.echo("no setting in the files has changed")
-    else:
+    elif changes:
         _say(answer, "")
 
 
