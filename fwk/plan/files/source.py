@@ -14,6 +14,8 @@ from fwk.model.errors import Problems
 _SHOWN_MAX = 60
 """Number of characters that a message shows of a value."""
 _HALF = re.compile(r"[\ud800-\udfff]")
+"""Half of a letter that UTF-16 writes as a pair; no file and no message can hold it."""
+_HALF_MISTAKE = "has half of a letter, written as \\ud800 to \\udfff; write the whole letter"
 VALUES_MAX = 100_000
 """Largest number of values of a file with its aliases expanded; more is a mistake or an attack."""
 FLOW_DEPTH_MAX = 100
@@ -206,7 +208,10 @@ class _Converter:
     def _scalar(self, node: yaml.Node, place: str) -> Any:
         kind, text = node.tag.removeprefix(_TAG), node.value
         if kind == "str":
-            return _joined(text)
+            whole = _joined(text)
+            if _HALF.search(whole):
+                self._problems.add(place, "", f"{whole[:_SHOWN_MAX]!r} {_HALF_MISTAKE}")
+            return whole
         if kind == "null":
             return None
         try:
@@ -229,5 +234,5 @@ def _joined(text: str) -> str:
         return text
     try:
         return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le")
-    except UnicodeDecodeError:  # a single surrogate; checks of the value report it
+    except UnicodeDecodeError:  # a single surrogate, which is a mistake
         return text

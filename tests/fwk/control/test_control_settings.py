@@ -163,6 +163,7 @@ def test_a_restarted_process_gets_the_changes_to_the_plan(settings: RunSettings)
         (["a/turner.bla={}"], "a/turner: no setting 'bla'"),
         (["a/turner.gain"], "'a/turner.gain' is not a PATH=VALUE"),
         (["a/turner.gain=[1"], "'[1' is not a YAML value"),
+        (['a/turner.names=["\\ud800"]'], "is not a YAML value"),
         (["a/turner.gain=[1, " + "1" * 100], f"'[1, {'1' * 56}...' is not a YAML value"),
         (["a/turner.gain=1", "b/turner.names=[x, 1]"], "b/turner: 'names.1' is 1; it should be a valid string"),
     ],

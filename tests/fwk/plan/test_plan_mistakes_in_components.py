@@ -337,6 +337,19 @@ def test_setting_without_its_component_is_explained(folder: Path) -> None:
         """,
     ),
     Broken(
+        r"it.yaml:1: 'x\ud800' has half of a letter, written as \ud800 to \udfff; write the whole letter",
+        """
+        components: {it/a: {use: strange:Named, config: {label: "x\\ud800"}}}
+        --- strange.py
+        from fwk import Component, Config
+        class Name(Config):
+            label: str = ""
+        class Named(Component):
+            stage = "think"
+            config: Name
+        """,
+    ),
+    Broken(
         "it.yaml:2: '1/a' is not a valid name; each part begins with a letter or '_', such as cyan1/ball",
         """
         components:
