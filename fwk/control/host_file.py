@@ -79,6 +79,8 @@ def forget(file: Path, paths: Sequence[str]) -> None:
 def _rewrite(file: Path, edit: Callable[[str], str]) -> None:
     file = file.resolve()
     try:
+        if file.exists() and not file.is_file() and not file.is_dir():
+            raise EditError("it is not an ordinary file; move it away")  # a pipe, or a device that would be replaced
         with _locked(file.parent) as folder:
             edited = edit(file.read_text(encoding="utf-8") if file.exists() else "")
             if edited.strip():

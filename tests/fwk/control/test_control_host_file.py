@@ -76,6 +76,20 @@ def test_a_full_disk_leaves_the_old_file(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [file]
 
 
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize("linked", [False, True])
+def test_what_is_no_ordinary_file_is_neither_read_nor_replaced(tmp_path: Path, linked: bool) -> None:
+    pipe, file = tmp_path / "pipe", tmp_path / "soccer.host.yaml"
+    os.mkfifo(pipe if linked else file)
+    if linked:
+        file.symlink_to(pipe)
+    with pytest.raises(KeepError, match="it is not an ordinary file; move it away"):
+        keep(file, [Kept.of("a/b.gain=1")])
+    with pytest.raises(KeepError, match="it is not an ordinary file; move it away"):
+        forget(file, ["a/b.gain"])
+    assert file.is_fifo()
+
+
 def test_a_missing_folder_is_named(tmp_path: Path) -> None:
     with pytest.raises(KeepError, match="No such file or directory"):
         keep(tmp_path / "gone" / "soccer.host.yaml", [Kept.of("a/b.gain=1")])
