@@ -17,11 +17,13 @@ from fwk.recording.log_index import index_path
 def new_file(path: Path, replace: bool) -> Iterator[Path]:
     """Gives a temporary name beside `path` to write to, and renames it at the end; an error leaves nothing there.
 
-    A folder can be written as well. A folder with files in it is never replaced.
+    A folder can be written as well. A folder with files in it is never replaced, nor are pipes and devices.
 
     Raises:
         LogError: the file exists and `replace` is false, or it cannot be written.
     """
+    if path.exists() and not path.is_file() and not path.is_dir():
+        raise LogError(f"{path}: not an ordinary file; choose another name")
     if path.is_dir() and any(path.iterdir()):
         raise LogError(f"{path}: a folder with files in it; choose another name, or remove it")
     if path.exists() and not path.is_dir() and not replace:
