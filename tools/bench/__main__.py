@@ -49,7 +49,7 @@ def main(
         about = {"command": _command(), **machine.describe(), "isolation": _isolation(), "rounds": str(rounds)}
         names = [peer.name for peer in chosen]
         record = Record(about, missing, names, _numbers(sizes), _numbers(varied), own)
-        _measure(record, rounds, seconds, soak, json_file)
+        measure(record, rounds, seconds, soak, json_file)
     tables = report.text(record)
     typer.echo(tables)
     if not no_page:
@@ -65,7 +65,8 @@ def _read(json_file: Path) -> Record:
         raise typer.BadParameter(f"--json: {json_file} does not hold the runs of a benchmark: {error}") from error
 
 
-def _measure(record: Record, rounds: int, seconds: float, soak_s: float, json_file: Path) -> None:
+def measure(record: Record, rounds: int, seconds: float, soak_s: float, json_file: Path) -> None:
+    """Measures everything that a record asks for, and saves it after each run; Ctrl-C ends it early."""
     for name, reason in record.missing.items():
         typer.echo(f"{name}: left out: {reason}", err=True)
 
@@ -77,7 +78,7 @@ def _measure(record: Record, rounds: int, seconds: float, soak_s: float, json_fi
     with suppress(KeyboardInterrupt):
         rotation.rotate(record.peers, record.scenarios, rounds, seconds, take)
         rotation.rotate_own(record.own, rounds, max(seconds, _REAL_TIME_S), take)
-        if soak_s:
+        if record.with_own and soak_s:
             rotation.rotate_own(LONG, 1, soak_s, take)
 
 
