@@ -2,17 +2,24 @@
 
 import ctypes
 import hashlib
+import os
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
 
+from fwk.clock import wall_us
 from fwk.model.plan import ModulePlan, Plan
 
 _KEPT = ("fwk", "lcmtypes")
 """Packages of the framework and of generated types, which belong to no application."""
 _DIGITS = 16
+_SETTLED_US = 1_000_000
+"""Age of a file's last change from which a further change is sure to have another time."""
 _KERNEL_SYMBOLS = [f"{prefix}openblas_get_corename{suffix}" for prefix in ("scipy_", "") for suffix in ("64_", "")]
+_kernel: list[str] = []
+"""Kernels of the libraries that were loaded when it was first asked for; empty as long as there was none."""
 
 
 def imported_modules(component_modules: Iterable[str], folders: Sequence[str]) -> dict[str, ModulePlan]:
@@ -26,13 +33,13 @@ def imported_modules(component_modules: Iterable[str], folders: Sequence[str]) -
     packages = {module.partition(":")[0].partition(".")[0] for module in component_modules} - {*_KEPT}
     prefixes = tuple(f"{Path(folder).resolve()}/" for folder in folders)
     found = {}
-    for name, module in sorted(sys.modules.items()):
+    for name, module in list(sys.modules.items()):
         file, top = getattr(module, "__file__", None), name.partition(".")[0]
         if not file or top in _KEPT:
             continue
         if top in packages or (prefixes and file.startswith(prefixes) and "site-packages" not in file):
-            found[name] = ModulePlan(file, _hash_of(file))
-    return found
+            found[name] = file
+    return {name: ModulePlan(file, _hash_of(file)) for name, file in sorted(found.items())}
 
 
 def changed_modules(plan: Plan) -> dict[str, str]:
@@ -67,6 +74,12 @@ def blas_kernel() -> str:
 
     Kernels differ in the last bits of matrix products, so the bytes of a run depend on the kernel.
     """
+    if not _kernel:  # a loaded library stays, and with it its kernel
+        _kernel.extend(_loaded_kernel())
+    return _kernel[0] if _kernel else ""
+
+
+def _loaded_kernel() -> Iterator[str]:
     with open("/proc/self/maps") as maps:
         libraries = {line.split(maxsplit=5)[5].strip() for line in maps if "openblas" in line}
     for library in sorted(libraries):
@@ -75,8 +88,7 @@ def blas_kernel() -> str:
             if hasattr(loaded, symbol):
                 ask = getattr(loaded, symbol)
                 ask.restype = ctypes.c_char_p
-                return str(ask().decode())
-    return ""
+                yield str(ask().decode())
 
 
 def other_kernel(names: tuple[str, str], kernels: tuple[str, str]) -> str:
@@ -102,6 +114,18 @@ def _file_of(module: str) -> str:
 
 def _hash_of(file: str) -> str:
     try:
-        return hashlib.sha256(Path(file).read_bytes()).hexdigest()[:_DIGITS]
+        found = os.stat(file)
+        if wall_us() - max(found.st_mtime_ns, found.st_ctime_ns) // 1000 > _SETTLED_US:
+            return _hash_of_version(file, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns)
+        return _hash_of_content(file)
     except OSError:  # deleted since it was imported
         return ""
+
+
+@lru_cache(maxsize=4096)
+def _hash_of_version(file: str, *_version: int) -> str:
+    return _hash_of_content(file)
+
+
+def _hash_of_content(file: str) -> str:
+    return hashlib.sha256(Path(file).read_bytes()).hexdigest()[:_DIGITS]

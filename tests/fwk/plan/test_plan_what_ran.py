@@ -1,5 +1,6 @@
 """The plan names the modules and the BLAS kernel that a run depends on."""
 
+import os
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -8,8 +9,10 @@ import numpy as np
 import pytest
 
 from fwk import Component
+from fwk.clock import wall_us
 from fwk.model.plan import ModulePlan, Plan
 from fwk.model.plan_document import document_of, plan_from
+from fwk.plan import what_ran
 from fwk.plan.what_ran import blas_kernel, changed_modules, imported_modules, other_kernel
 from fwk.testing.plans import plan_of
 
@@ -57,6 +60,18 @@ def test_changed_and_missing_modules_are_reported(folder: Path) -> None:
         "steering_rules": f"{rules} was changed",
         "steering_wheel": "/app/steering_wheel.py is missing",
     }
+
+
+def test_a_module_is_read_again_once_it_changes(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(what_ran, "wall_us", lambda: wall_us() + 2_000_000)  # the files are old
+    plan = plan_with(folder)
+    with monkeypatch.context() as patch:
+        patch.setattr(what_ran, "_hash_of_content", {}.__getitem__)
+        assert changed_modules(plan) == {}
+    rules = folder / "steering_rules.py"
+    rules.write_text("GAIN = 2\n")
+    os.utime(rules, ns=(0, 0))
+    assert changed_modules(plan) == {"steering_rules": f"{rules} was changed"}
 
 
 def test_a_module_of_the_same_name_elsewhere_is_reported(folder: Path) -> None:
