@@ -1,9 +1,11 @@
 """JSON Schema of launch files with the settings and ports of the components, for editors that complete and check."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from fwk.component.config import Config
 from fwk.component.declaration import Declaration
 from fwk.component.meanings import DocumentedSchema
 from fwk.model.errors import Problems
@@ -127,9 +129,7 @@ class _Made:
 
     def _settings_of(self, use: str, found: Declaration) -> Schema:
         """Adds the settings of a class to the definitions; returns a reference to them."""
-        made = found.config.model_json_schema(ref_template=f"{_REF}{use}.{{model}}", schema_generator=DocumentedSchema)
-        self._defs |= {f"{use}.{name}": _partial(below) for name, below in made.pop("$defs", {}).items()}
-        self._defs[use] = _partial(made)
+        self._defs |= _definitions_of(use, found.config)
         return {"$ref": f"{_REF}{use}"}
 
     def _complete_entries(self, classes: Mapping[str, Declaration]) -> None:
@@ -171,6 +171,14 @@ class _Made:
 
     def _any_of(self, uses: Iterable[str]) -> Schema:
         return _joined("anyOf", [self._settings[use] for use in dict.fromkeys(uses) if use in self._settings])
+
+
+@lru_cache(maxsize=256)
+def _definitions_of(use: str, config: type[Config]) -> Schema:
+    """Returns the settings of a class and the types in them, made once for all files, to be read only."""
+    made = config.model_json_schema(ref_template=f"{_REF}{use}.{{model}}", schema_generator=DocumentedSchema)
+    below = {f"{use}.{name}": _partial(each) for name, each in made.pop("$defs", {}).items()}
+    return {**below, use: _partial(made)}
 
 
 def _joined(word: str, schemas: list[Schema]) -> Schema:
