@@ -40,5 +40,7 @@ class ProcessHooks:
     """Called when every `init` has returned."""
     runs_ahead: bool = False
     """Whether the host runs stages within its lookahead without waiting for their ticks; the same either way."""
+    reports: bool = True
+    """Whether a supervisor listens to the states and figures of the components."""
     lift_memory_limit: Callable[[], None] = _nothing
     """Ends the process's memory limit."""

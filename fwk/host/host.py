@@ -324,6 +324,12 @@ class Host:
         ticks = self._answered[0] > 0
         self._report_us = self._now_us() + (REPORT_US if ticks else READY_REPORT_US)
         self._report_wake_us = self._report_us + (TICK_AWAITED_US if ticks else 0)
+        if self._hooks.reports:
+            self._report_actual()
+        for runner in self.group.runners.values():
+            runner.log._report_dropped()
+
+    def _report_actual(self) -> None:
         runners, metrics = self.group.runners, self.group.metrics.values()
         actual = actual_t()
         actual.run, actual.host = self._assignment.run, self._assignment.host
@@ -337,8 +343,6 @@ class Host:
         counters.fetched, counters.lost = self.inputs.fetched, self.inputs.lost
         counters.foreign = self._complaints.total
         self._sender.publish(sync.ACTUAL, sync.encode_actual(actual), self._sync_port)
-        for runner in runners.values():
-            runner.log._report_dropped()
 
     def _send_log(self, line: log_t) -> None:
         if not line.tick:

@@ -81,7 +81,7 @@ class MemoryHost:
         self._expected: dict[int, tuple[int, list[bytes]]] = {}
         self._told = 0  # number of the newest change that the host has
         self._network = MemoryNetwork(self._sent, self._opened)
-        hooks = ProcessHooks(stopping=lambda: self._stops, find_class=find_class)
+        hooks = ProcessHooks(stopping=lambda: self._stops, find_class=find_class, reports=False)
         self.host = host_of(assignment, self._network, hooks)
         self._steps = self.host.serve()
         self._until_us = 0
