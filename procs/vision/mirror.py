@@ -93,12 +93,12 @@ class Mirror:
 
         Pixels that see the horizon or above it give NaN.
         """
-        offsets = (self.centre_px - pixels[:, ::-1]) / self.scale_px
-        squares = np.sum(offsets * offsets, axis=1)
-        mirror_rays = np.column_stack((2.0 * offsets, squares - 1.0))
-        rays = product(mirror_rays, self._from_mirror.T)
-        down = np.where(rays[:, 2] < -_LEAST, -rays[:, 2], np.nan)
-        return np.asarray(rays[:, :2] * ((self.height_m - plane_m) / down)[:, None])
+        ahead, left = ((self.centre_px - pixels[:, axis]) / self.scale_px for axis in (1, 0))
+        rays = (2.0 * ahead, 2.0 * left, ahead * ahead + left * left - 1.0)  # in the mirror's frame
+        # By columns, which takes a third of the time that rows of three take.
+        x, y, z = (rays[0] * row[0] + rays[1] * row[1] + rays[2] * row[2] for row in self._from_mirror)
+        scale = (self.height_m - plane_m) / np.where(z < -_LEAST, -z, np.nan)
+        return np.column_stack((x * scale, y * scale))
 
     def radius_px(self, distance_m: float) -> float:
         """Returns the radius in the picture at which ground at that distance appears, without tilt."""
