@@ -135,6 +135,8 @@ def read_text(text: str, shown: str, problems: Problems) -> Node | None:
     try:
         loader = _Loader(text)
         root = loader.get_single_node()
+        if root and "*" in text and _count(root, {}) > VALUES_MAX:  # before they are written out
+            raise _TooManyValuesError
         return _Converter(shown, problems).convert(root, 1) if root else Node({}, f"{shown}:1")
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
@@ -154,6 +156,16 @@ def read_text(text: str, shown: str, problems: Problems) -> Node | None:
         if loader:
             loader.dispose()
     return None
+
+
+def _count(node: yaml.Node, counted: dict[yaml.Node, int]) -> int:
+    """Returns the number of values of a node with its aliases written out; `counted` are those of nodes so far."""
+    if node not in counted:
+        counted[node] = 1  # also where it contains itself
+        if isinstance(node, yaml.CollectionNode):
+            parts = [each[1] for each in node.value] if isinstance(node, yaml.MappingNode) else node.value
+            counted[node] += sum(_count(each, counted) for each in parts)
+    return counted[node]
 
 
 class _TooDeepError(Exception):

@@ -2,6 +2,10 @@
 
 from pathlib import Path
 
+import pytest
+
+from fwk.model.errors import PlanError, Problems
+from fwk.plan.files import source
 from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
 
 
@@ -311,3 +315,12 @@ def test_several_files(folder: Path, broken: Broken) -> None:
 )
 def test_stages(folder: Path, broken: Broken) -> None:
     assert said(broken, folder) == expected(broken)
+
+
+def test_aliases_are_counted_before_they_are_written_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(source, "_Converter", None)
+    further = [f"a{number}: &a{number} [{', '.join(10 * [f'*a{number - 1}'])}]" for number in range(1, 6)]
+    problems = Problems()
+    assert source.read_text("\n".join(["a0: &a0 [1, 2]", *further]), "it.yaml", problems) is None
+    with pytest.raises(PlanError, match="more than 100000 values"):
+        problems.stop_if_any()
