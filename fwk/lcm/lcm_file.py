@@ -3,6 +3,7 @@
 import keyword
 import re
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 RENAMED = {f"robot.{name}": f"core.{name}" for name in ("frame_t", "picture_t", "transform_t", "transforms_t")}
@@ -82,6 +83,12 @@ def read_lcm_file(path: Path) -> LcmFile:
         line = data[: error.start].count(b"\n") + 1
         byte = data[error.start]
         raise LcmSyntaxError(f"{path}:{line}: byte 0x{byte:02x} is not UTF-8; save the file as UTF-8") from error
+    return _parsed(path, text)
+
+
+@lru_cache(maxsize=128)
+def _parsed(path: Path, text: str) -> LcmFile:
+    """Returns the content of a file with this text; a command reads the files of its types several times."""
     return _Parser(path, text).file()
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from fwk.lcm.lcm_file import read_lcm_file
 from fwk.lcm.typegen import TypeGenerationError, generate
 from lcmtypes.core import command_t, frame_t, header_t
 from lcmtypes.robot import odometry_t
@@ -155,3 +156,12 @@ def test_type_of_a_former_name_in_ones_own_package_counts(folder: Path) -> None:
     generate(folder)
     program = f"{QUIET}from lcmtypes.robot import frame_t, transforms_t; print(frame_t(mine=1), transforms_t.__name__)"
     assert run(folder, program) == "frame_t(mine=1) transforms_t"
+
+
+def test_a_file_is_parsed_again_once_it_changes(tmp_path: Path) -> None:
+    file = tmp_path / "walk.lcm"
+    file.write_text("package walk;\nstruct step_t { int32_t x; }\n")
+    first = read_lcm_file(file)
+    assert read_lcm_file(file) is first
+    file.write_text("package walk;\nstruct step_t { int32_t y; }\n")
+    assert [member.name for member in read_lcm_file(file).structs[0].members] == ["y"]
