@@ -8,7 +8,7 @@ from procs.behaviour.game import Game, Whose
 from procs.behaviour.path import Disc
 from procs.behaviour.shortest import first_turn
 from procs.behaviour.view import Robot
-from procs.model.field import SIDES, Field, Point
+from procs.model.field import Field, Point
 from procs.model.game_states import State
 from procs.model.geometry import ahead, bearing_rad, between, clamp
 
@@ -249,7 +249,7 @@ def _way_out(own: Point, game: Game, field: Field, distance_m: float, taken: Seq
 
 
 def _in_area(place: Point, field: Field) -> bool:
-    return any(field.in_penalty_area(*place, side, _AREA_M) for side in SIDES)
+    return field.in_penalty_area(abs(place.x_m), place.y_m, 1.0, _AREA_M)
 
 
 def _around(place: Point, game: Game, field: Field, bodies: Bodies, taken: Sequence[Point] = ()) -> Point:
