@@ -1,7 +1,9 @@
 """Fixtures that all tests share: ports, and skips for programs and rights that the machine lacks."""
 
 import gc
+import itertools
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -40,6 +42,28 @@ _PACKAGES = {
 """Program to Debian package, where the names differ."""
 _BROWSER_TESTS = "tests/system/web/"
 """Folder of the tests that share a run and a browser: each worker that executes some of them would start both."""
+_OBJECTS = 20_000
+"""New objects from which the garbage collector looks for rings of them; with the usual 700 it takes 6 % of the time."""
+
+
+class _Imported:
+    """Names of the imported modules, listed anew only once their number or the newest of them is another."""
+
+    def __init__(self) -> None:
+        self._mark = 0, ""
+        self._names: frozenset[str] = frozenset()
+
+    def names(self) -> frozenset[str]:
+        """Returns the names; they are thousands, and most tests import nothing."""
+        mark = len(sys.modules), next(reversed(sys.modules))
+        if mark != self._mark:
+            self._mark, self._names = mark, frozenset(sys.modules)
+        return self._names
+
+
+_IMPORTED = _Imported()
+_FOLDERS = itertools.count()
+"""Numbers of the folders of tests."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -64,15 +88,22 @@ def _same_environment() -> Iterator[None]:
 @pytest.fixture(autouse=True)
 def _own_modules(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Forgets the modules of a test's own folder: those of a later test may have the same names."""
-    path, modules = list(sys.path), set(sys.modules)
+    path, modules = list(sys.path), _IMPORTED.names()
     yield
     sys.path[:] = path
     base = str(tmp_path_factory.getbasetemp())
-    for name in set(sys.modules) - modules:
+    for name in _IMPORTED.names() - modules:
         module = sys.modules[name]
         places = [getattr(module, "__file__", None) or "", *getattr(module, "__path__", [])]
         if any(place.startswith(base) for place in places):
             del sys.modules[name]
+
+
+@pytest.fixture
+def tmp_path(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An empty folder of the test, numbered without a look at all folders and a link to the newest, as pytest does."""
+    name = re.sub(r"\W", "_", request.node.name)[:30]
+    return tmp_path_factory.mktemp(f"{name}{next(_FOLDERS)}", numbered=False)
 
 
 @pytest.hookimpl(wrapper=True)
@@ -83,6 +114,7 @@ def pytest_collection() -> Generator[None, object, object]:
         return (yield)
     finally:
         gc.freeze()
+        gc.set_threshold(_OBJECTS)
         gc.enable()
 
 
