@@ -6,7 +6,6 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from filterpy.kalman import IMMEstimator, KalmanFilter
 
 from procs.model.ball import BALL
 from procs.model.estimation import predict, update
@@ -38,6 +37,8 @@ def own_ball() -> Step:
 
 def library_ball() -> Step:
     """Returns the same tick with filterpy's interacting multiple models, without friction."""
+    from filterpy.kalman import IMMEstimator, KalmanFilter  # takes half a second, for scipy.stats
+
     filters = []
     for added in noise(_TICK_S, BALL.rolling_share):
         made = KalmanFilter(dim_x=STATES, dim_z=2)
