@@ -121,7 +121,14 @@ def test_impossible_settings_are_refused_at_launch(settings: tuple[str, ...], mi
     assert mistake in str(raised.value)
 
 
-@pytest.mark.parametrize("mirror", ["{size_px: 120, view_angle_deg: 86}", "{height_m: 0.4}", "{size_px: 1000}"])
+@pytest.mark.parametrize(
+    "mirror",
+    [
+        pytest.param("{size_px: 120, view_angle_deg: 86}", marks=pytest.mark.slow),
+        "{height_m: 0.4}",
+        pytest.param("{size_px: 1000}", marks=pytest.mark.slow),
+    ],
+)
 def test_covariance_is_honest_with_any_mirror(mirror: str) -> None:
     _, surprises = wander(2, (f"shared.mirror={mirror}",))
     assert len(surprises) > 100

@@ -52,7 +52,13 @@ def test_way_from_before_everything_known_is_not_known() -> None:
     assert long.since(2 * MEMORY_US - MEMORY_US // 2) is not None
 
 
-@pytest.mark.parametrize("settings", [("*/percepts.latency_s=0.6",), ("*/percepts.latency_s=1", "period_s=0.02")])
+@pytest.mark.parametrize(
+    "settings",
+    [
+        ("*/percepts.latency_s=0.6",),
+        pytest.param(("*/percepts.latency_s=1", "period_s=0.02"), marks=pytest.mark.slow),
+    ],
+)
 def test_robot_with_a_slow_camera_drives_and_knows_its_place(settings: tuple[str, ...]) -> None:
     errors, surprises = wander(1, settings)
     assert len(errors) > 100

@@ -8,7 +8,7 @@ import pytest
 from fwk.testing import ExpressionError, Verdict
 from procs.scenarios import command, evaluation
 from procs.scenarios.dummy import Dummy
-from procs.scenarios.file import BOOK, Scenario
+from procs.scenarios.file import BOOK, Scenario, parsed
 from procs.scenarios.scenario import outcome, read, run
 from tests.procs.scenarios.scenario_files import written
 
@@ -34,7 +34,7 @@ def test_shot_on_a_goal_without_its_keeper_goes_in(name: str) -> None:
 def test_book_has_scenarios_that_say_what_they_are_for() -> None:
     assert len(SCENARIOS) >= 40
     assert all(path.read_text().startswith("# ") for path in SCENARIOS)
-    for scenario in map(read, SCENARIOS):
+    for scenario in (parsed(path.read_text(), str(path)) for path in SCENARIOS):
         assert scenario.eventually or scenario.in_order or scenario.always or scenario.at_end
 
 

@@ -201,7 +201,7 @@ def test_obstacle_covariance_is_honest() -> None:
     assert 0.7 < np.mean(normed) < 3.0  # two degrees of freedom: 2 if the covariance were exact
 
 
-@pytest.mark.parametrize(("size_px", "rays"), [(400, 90), (1200, 180), (400, 720)])
+@pytest.mark.parametrize(("size_px", "rays"), [(400, 90), pytest.param(1200, 180, marks=pytest.mark.slow), (400, 720)])
 def test_covariance_tells_how_far_the_rays_are_apart(size_px: int, rays: int) -> None:
     mirror = MirrorConfig(size_px=size_px).mirror()
     star = Scan.star(mirror, rays, 0.28, DEFAULTS.farthest_m)
