@@ -69,11 +69,12 @@ class FakeRobot:
         pose = self.pose - self.latency_s * self.velocity * (0, 0, 1)
         way_m = self.latency_s * self.velocity[:2]
         pose[:2] -= rotation(self.pose[2] - self.latency_s * self.velocity[2] / 2) @ way_m
-        seen = (paint_m() - pose[:2]) @ rotation(pose[2])
-        range_m = np.hypot(seen[:, 0], seen[:, 1])
-        inside = np.flatnonzero((range_m < REACH_M) & (range_m > 0.4))
+        x_m, y_m = paint_m().T
+        squares_m2 = (x_m - pose[0]) ** 2 + (y_m - pose[1]) ** 2
+        inside = np.flatnonzero((squares_m2 < REACH_M**2) & (squares_m2 > 0.4**2))
         chosen = inside[self.rng.choice(len(inside), min(count, len(inside)), replace=False)]
-        seen, range_m = seen[chosen], range_m[chosen]
+        seen = (paint_m()[chosen] - pose[:2]) @ rotation(pose[2])
+        range_m = np.hypot(seen[:, 0], seen[:, 1])
         ray = seen / range_m[:, None]
         along_m, across_m = 0.02 + 0.004 * range_m**2, 0.02 + 0.004 * range_m
         seen = seen + ray * (along_m * self.rng.standard_normal(len(seen)))[:, None]

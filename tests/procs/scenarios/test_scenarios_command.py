@@ -13,7 +13,6 @@ from procs.scenarios import command
 
 ROOT = Path(__file__).parents[3]
 COMMAND = (sys.executable, "-m", "procs.scenarios")
-QUICK = ("match-ends", "kick-off-own-halves")
 
 
 def test_seeds_are_played_with_files_of_ones_own(
@@ -92,16 +91,26 @@ def test_launch_file_is_that_of_one_scenario(
     assert "--launch-file is that of one scenario with one seed" in capsys.readouterr().err
 
 
-def test_full_disk_ends_the_command_in_a_sentence() -> None:
+def two_short(folder: Path) -> list[str]:
+    """Writes two scenarios that end at once; returns their paths."""
+    files = [folder / "one.yaml", folder / "other.yaml"]
+    for file in files:
+        file.write_text("dummies: [cyan2]\nalways: [x(cyan2) < 0]\ntime_s: 0.2\n")
+    return list(map(str, files))
+
+
+def test_full_disk_ends_the_command_in_a_sentence(tmp_path: Path) -> None:
+    words = [*COMMAND, *two_short(tmp_path)]
     with open("/dev/full", "w") as full:
-        done = subprocess.run([*COMMAND, *QUICK], stdout=full, stderr=subprocess.PIPE, text=True, cwd=ROOT, check=False)
+        done = subprocess.run(words, stdout=full, stderr=subprocess.PIPE, text=True, cwd=ROOT, check=False)
     assert (done.returncode, done.stderr) == (2, "error: the output cannot be written: No space left on device\n")
 
 
-def test_closed_pipe_ends_the_command_silently() -> None:
+def test_closed_pipe_ends_the_command_silently(tmp_path: Path) -> None:
     reading, writing = os.pipe()
     os.close(reading)
-    done = subprocess.run([*COMMAND, *QUICK], stdout=writing, stderr=subprocess.PIPE, cwd=ROOT, check=False)
+    words = [*COMMAND, *two_short(tmp_path)]
+    done = subprocess.run(words, stdout=writing, stderr=subprocess.PIPE, cwd=ROOT, check=False)
     os.close(writing)
     assert (done.returncode, done.stderr) == (1, b"")
 

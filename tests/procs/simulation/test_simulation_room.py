@@ -14,16 +14,35 @@ from procs.simulation.physics.room import Room
 from procs.simulation.simulator import Simulator
 
 FIELD = Field()
+SMALL = Field(
+    length_m=9.0,
+    width_m=6.0,
+    restart_offset_m=1.0,
+    penalty_mark_distance_m=1.8,
+    penalty_area_width_m=3.5,
+    penalty_area_depth_m=1.2,
+    goal_area_width_m=2.6,
+    goal_area_depth_m=0.5,
+    goal_width_m=1.5,
+)
 APART_M = ROBOT.radius_m + BALL.radius_m
 WALL_X_M, WALL_Y_M = FIELD.half_length_m + FIELD.border_m, FIELD.half_width_m + FIELD.border_m
 CORNERS = [(11.9, 7.9), (-11.9, 7.9), (12.0, 0.0), (0.0, -8.0)]
 GOALS = [(11.0, 1.26), (-11.6, 1.2), (11.62, 0.0), (-11.3, -1.27)]
 
 
-def world_of(*messages: place_robot_t | place_ball_t) -> tuple[MemorySystem, ground_truth_t]:
-    """Returns a match without agents, led by hand, and its truth after the commands, carried out one a tick."""
+def world_of(
+    *messages: place_robot_t | place_ball_t, robots: tuple[str, ...] = ("cyan",)
+) -> tuple[MemorySystem, ground_truth_t]:
+    """Returns a match of some robots, led by hand, and its truth after the commands, carried out one a tick.
+
+    The robots have no agents; `robots` are beginnings of their names.
+    """
     by_hand = ["world/referee.automatic=false"]  # otherwise fouls of the robots would have the ball put elsewhere
-    system = system_of("soccer-truth.yaml", lambda name: not name.endswith("/agent"), sets=by_hand)
+    parts = ("world/", *robots)
+    system = system_of(
+        "soccer-truth.yaml", lambda name: name.startswith(parts) and not name.endswith("/agent"), sets=by_hand
+    )
     system.come_in("world/referee_command@outside", referee_command_t(name="start"))
     system.tick(4)
     for message in messages:
@@ -79,7 +98,7 @@ def test_robot_at_a_wall_or_goal_stands_clear(place: tuple[float, float]) -> Non
 
 def test_robots_at_one_place_stand_beside_each_other() -> None:
     names = ["cyan2", "cyan3", "cyan4", "cyan5", "magenta2", "magenta3"]
-    _, truth = world_of(*(place_robot_t(robot=name, x_m=3.0, y_m=3.0) for name in names))
+    _, truth = world_of(*(place_robot_t(robot=name, x_m=3.0, y_m=3.0) for name in names), robots=("cyan", "magenta"))
     assert_clear(truth)
     assert max(math.dist(places_of(truth)[name], (3.0, 3.0)) for name in names) < 1.2
 
@@ -132,11 +151,11 @@ def test_ball_in_the_mouth_of_a_starting_robot_stays_there() -> None:
 
 
 def test_full_ground_has_no_free_place() -> None:
-    room = Room(FIELD)
-    robots = [Point(0.5 * column, 0.5 * row) for column in range(-24, 25) for row in range(-16, 17)]
+    room = Room(SMALL)
+    robots = [Point(0.5 * column, 0.5 * row) for column in range(-11, 12) for row in range(-8, 9)]
     assert room.nearest(Point(1.0, 1.0), BALL.radius_m, robots, APART_M) is None
-    robots.remove(Point(-4.0, 6.0))
-    assert room.nearest(Point(1.0, 1.0), BALL.radius_m, robots, APART_M) == pytest.approx((-4.0, 6.0), abs=0.2)
+    robots.remove(Point(-4.0, 3.0))
+    assert room.nearest(Point(1.0, 1.0), BALL.radius_m, robots, APART_M) == pytest.approx((-4.0, 3.0), abs=0.2)
 
 
 def test_place_on_a_ring_is_taken_if_it_is_nearer() -> None:
@@ -154,7 +173,7 @@ def test_place_beside_a_robot_is_taken_if_it_is_nearer() -> None:
 
 @pytest.mark.parametrize(("vz_m_s", "rises"), [(-5.0, True), (-0.5, False), (-0.001, False)])
 def test_ball_thrown_at_the_ground_bounces_or_lies(vz_m_s: float, rises: bool) -> None:
-    system, truth = world_of(place_ball_t(x_m=1.0, y_m=1.0, vz_m_s=vz_m_s))
+    system, truth = world_of(place_ball_t(x_m=1.0, y_m=1.0, vz_m_s=vz_m_s), robots=("cyan1",))
     heights_m, speeds_m_s = [truth.ball_z_m], [truth.ball_vz_m_s]
     for _ in range(75):
         system.tick()

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fwk.model.errors import PlanError
-from fwk.testing import Bench, MemorySystem, launch_plan, system_of
+from fwk.testing import Bench, launch_plan, system_of
 from lcmtypes.soccer import ground_truth_t, obstacle_t, world_model_t
 from procs.model.robot import Player, number_of, player_of
 from procs.simulation.simulator import Simulator
@@ -119,18 +119,13 @@ def test_unusual_but_possible_settings_are_accepted(settings: tuple[str, ...]) -
     assert launch_plan("soccer-percepts.yaml", settings)
 
 
-@pytest.fixture(scope="module")
-def six(tmp_path_factory: pytest.TempPathFactory) -> MemorySystem:
-    """Robots with the number 6, which the launch file does not list as players."""
-    file = tmp_path_factory.mktemp("six") / "six.yaml"
+def test_robot_without_an_entry_plays_by_its_name(tmp_path: Path) -> None:
+    """Robots have the number 6, which the launch file does not list as players."""
+    file = tmp_path / "six.yaml"
     file.write_text(SIX)
-    system = system_of(str(file))
-    system.tick(75)
-    return system
-
-
-def test_robot_without_an_entry_plays_by_its_name(six: MemorySystem) -> None:
-    truth: ground_truth_t = ground_truth_t.decode(six.sent["world/ground_truth"][0])
+    six = system_of(str(file))
+    six.tick()
+    truth: ground_truth_t = six.newest("world/ground_truth")
     robots = {robot.name: robot for robot in truth.robots}
     assert [(robot.team, robot.number) for robot in robots.values()] == [("cyan", 1), ("cyan", 6), ("magenta", 6)]
     assert robots["cyan6"].x_m < 0.0 < robots["magenta6"].x_m, "each begins in its own half"
