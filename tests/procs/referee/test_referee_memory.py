@@ -1,4 +1,4 @@
-"""A referee that was restarted goes on with the match that its own messages state."""
+"""The memory of the referee: one that was restarted goes on with the match of the one before it."""
 
 from typing import Any
 
