@@ -1,30 +1,16 @@
 """The cases of the rules with a referee that is restarted in every tick: each ends as without a restart."""
 
+from importlib import import_module
+
 import pytest
 
 from procs.referee.memory import recall, written
 from procs.referee.sight import Sight
 from procs.referee.whistle import Whistle
-from tests.procs.referee import (
-    test_referee_advantage,
-    test_referee_by_hand,
-    test_referee_bystanders,
-    test_referee_fouls,
-    test_referee_match,
-    test_referee_mirrored,
-    test_referee_set_pieces,
-)
 
-_CASES = (
-    test_referee_advantage,
-    test_referee_by_hand,
-    test_referee_bystanders,
-    test_referee_fouls,
-    test_referee_match,
-    test_referee_mirrored,
-    test_referee_set_pieces,
-)
-globals().update({name: case for each in _CASES for name, case in vars(each).items() if name.startswith("test_")})
+_CASES = ("advantage", "by_hand", "bystanders", "fouls", "match", "mirrored", "set_pieces")
+_MODULES = [import_module(f"tests.procs.referee.test_referee_{name}") for name in _CASES]
+globals().update({name: case for each in _MODULES for name, case in vars(each).items() if name.startswith("test_")})
 
 
 @pytest.fixture(autouse=True)
