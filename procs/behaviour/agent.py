@@ -3,7 +3,6 @@
 import math
 from typing import Literal
 
-from pydantic import Field as Setting
 from pydantic import ValidationInfo, field_validator
 
 from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Writes, channel
@@ -34,7 +33,7 @@ class AgentConfig(Config):
 
     field: Field = Field()
     """Measures of the field."""
-    players: Players = Setting(dict(PLAYERS), validate_default=True)
+    players: Players = dict(PLAYERS)
     """Team and number of each robot."""
     robot: RobotModel = ROBOT
     """Geometry of all robots."""

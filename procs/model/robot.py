@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Mapping
 from functools import cache
-from typing import Literal, Protocol
+from typing import Annotated, Literal, Protocol
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -81,8 +81,8 @@ class Player(BaseModel):
     """Number on the robot's back; no two players of a team have the same."""
 
 
-Players = dict[str, Player]
-"""Namespace of each robot to its team and number."""
+Players = Annotated[dict[str, Player], Field(frozen=True)]
+"""Namespace of each robot to its team and number; no component of a match changes them while it runs."""
 
 PLAYERS: Mapping[str, Player] = {
     f"{team}{number}": Player(team=team, number=number) for team in ("cyan", "magenta") for number in range(1, 6)

@@ -96,7 +96,7 @@ class Rules(BaseModel):
     """Measures of the field."""
     robot: RobotModel = ROBOT
     """Geometry of the robots, by which pushing is judged."""
-    players: Players = Field(dict(PLAYERS), frozen=True)
+    players: Players = dict(PLAYERS)
     """Team and number of each robot."""
 
     def time_of_s(self, piece: State) -> float:

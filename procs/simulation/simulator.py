@@ -52,7 +52,7 @@ class SimulatorConfig(Config):
 
     field: Field = Setting(Field(), frozen=True)
     """Measures of the field."""
-    players: Players = Setting(dict(PLAYERS), frozen=True)
+    players: Players = dict(PLAYERS)
     """Team and number of each robot."""
     robot: RobotModel = Setting(ROBOT, frozen=True)
     """Geometry of all robots."""

@@ -29,7 +29,9 @@ def test_robots_and_wheels_are_refused_as_at_launch(settings: RunSettings, text:
     assert str(in_run.value) == f"world/simulator: {cause}"
 
 
-@pytest.mark.parametrize("component", ["world/simulator", "world/referee"])
-def test_players_are_fixed_where_they_are_read_once(settings: RunSettings, component: str) -> None:
-    with pytest.raises(RequestError, match=r"'players\.cyan1.number' cannot change during a run"):
-        settings.check([f"{component}.players.cyan1.number=3"])
+def test_players_are_fixed_in_each_component(settings: RunSettings) -> None:
+    names = [f"{row['component']}.{row['setting']}" for row in settings.rows(["*.players.cyan1.number"])]
+    assert {"world/simulator", "world/referee", "cyan1/agent"} <= {name.partition(".")[0] for name in names}
+    for name in names:
+        with pytest.raises(RequestError, match=r"'players\.cyan1.number' cannot change during a run"):
+            settings.check([f"{name}=3"])
