@@ -5,7 +5,6 @@ The web console draws the same over live pictures.
 
 import argparse
 import json
-import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -15,6 +14,7 @@ from typing import TypeVar
 import cv2
 import numpy as np
 
+from fwk.program import BAD_INPUT, complain
 from fwk.testing import MemorySystem, PlanError, launch_plan, settings_in, system_of
 from lcmtypes.core import picture_t
 from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t
@@ -112,13 +112,10 @@ def _included(launch: str) -> str:
     return next((str(place.absolute()) for place in places if place.is_file()), launch)
 
 
-class BadInputError(SystemExit):
-    """Ends the program with a sentence and exit code 2."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__(text)
-        self.code = 2
-        print(text, file=sys.stderr)
+def _refused(text: str) -> SystemExit:
+    """Says what is wrong with the input; returns the end of the program."""
+    complain(text)
+    return SystemExit(BAD_INPUT)
 
 
 def _time_s(text: str) -> float:
@@ -144,9 +141,9 @@ def main() -> None:
     parser.add_argument("--seed", type=_seed, default=7, help="seed of the match; default: 7")
     asked = parser.parse_args()
     if asked.file.suffix not in _SUFFIXES:
-        raise BadInputError(f"'{asked.file}' ends in '{asked.file.suffix}'; it should end in {' or '.join(_SUFFIXES)}")
+        raise _refused(f"'{asked.file}' ends in '{asked.file.suffix}'; it should end in {' or '.join(_SUFFIXES)}")
     if not asked.file.absolute().parent.is_dir():
-        raise BadInputError(f"'{asked.file}' cannot be written: there is no folder '{asked.file.parent}'")
+        raise _refused(f"'{asked.file}' cannot be written: there is no folder '{asked.file.parent}'")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "sight.yaml"
         file.write_text(_LAUNCH.format(file=json.dumps(_included(asked.launch)), name=_PICTURES, config=_FINE))
@@ -157,18 +154,18 @@ def main() -> None:
             names = (each.name for each in launch_plan(str(file)).components)
             robots = [robot for robot, _, short in (name.rpartition("/") for name in names) if short == _DETECTOR]
             there = ", ".join(robots) or "none"
-            raise BadInputError(f"{asked.launch}: no {_DETECTOR} of {asked.robot}; robots with one: {there}") from error
+            raise _refused(f"{asked.launch}: no {_DETECTOR} of {asked.robot}; robots with one: {there}") from error
         except PlanError as error:
-            raise BadInputError(str(error)) from error
+            raise _refused(str(error)) from error
         system = system_of(str(file), seed=asked.seed)
         while system.now_us < asked.time * US_PER_S:
             system.tick()
         mirror = MirrorConfig(**settings["mirror"])
         picture = sight_in(system, asked.robot, mirror, settings["ball"]["radius_m"])
     if picture is None:
-        raise BadInputError(f"no picture of {asked.robot}/image until {asked.time:g} s; a later --time would show one")
+        raise _refused(f"no picture of {asked.robot}/image until {asked.time:g} s; a later --time would show one")
     if not cv2.imwrite(str(asked.file), picture):
-        raise BadInputError(f"'{asked.file}' cannot be written")
+        raise _refused(f"'{asked.file}' cannot be written")
 
 
 if __name__ == "__main__":
