@@ -6,18 +6,17 @@ from pathlib import Path
 from typing import Any
 
 from fwk.testing import launch_plan, system_of
-from fwk.testing.executors import INSTALL
 from procs.evaluation.beliefs import Samples, believed
 from procs.evaluation.claims import claims
 from procs.evaluation.conduct import conducted
 from procs.evaluation.delays import delays
 from procs.evaluation.innovations import innovations
 from procs.evaluation.piece import Piece, piece_of
-from procs.evaluation.plots import plot
 from procs.evaluation.possession import possession
+from procs.evaluation.report_files import write_report
 from procs.evaluation.results import flaw_in, samples_in
 from procs.evaluation.sightings import sightings
-from procs.evaluation.table import as_csv, as_json, as_text, rows_of
+from procs.evaluation.table import as_text, rows_of
 from procs.evaluation.team_ball import team_ball
 from procs.model.robot import RobotModel
 
@@ -61,10 +60,4 @@ def report(results: Sequence[Mapping[str, list[float] | list[list[float]]]], fol
     Measures without a value are left out: no match has all, and a result of former code may have others.
     """
     rows = [row for row in rows_of([samples_in(result) for result in results]) if not math.isnan(row.value)]
-    (folder / "table.csv").write_text(as_csv(rows))
-    (folder / "table.json").write_text(as_json(rows))
-    try:
-        plot(rows, folder / "measures.png")
-    except ImportError:
-        return f"{as_text(rows)}\nno picture: matplotlib is not installed; type: {INSTALL}"
-    return as_text(rows)
+    return "\n".join(filter(None, (as_text(rows), write_report(rows, folder))))

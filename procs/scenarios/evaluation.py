@@ -5,10 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from fwk.testing import ExpressionError
-from fwk.testing.executors import INSTALL
 from procs.evaluation.intervals import wilson
-from procs.evaluation.plots import plot
-from procs.evaluation.table import Row, as_csv, as_json, as_text
+from procs.evaluation.report_files import write_report
+from procs.evaluation.table import Row, as_text
 from procs.scenarios.file import BOOK, Scenario, ScenarioError
 from procs.scenarios.scenario import outcome, read
 
@@ -81,15 +80,8 @@ def report(results: Sequence[Mapping[str, Sequence[str]]], folder: Path) -> str:
     names = sorted({name for result in results for name in result})
     outcomes = {name: [not result[name] for result in results if name in result] for name in names}
     rows = rows_of(outcomes)
-    (folder / "table.csv").write_text(as_csv(rows))
-    (folder / "table.json").write_text(as_json(rows))
     broken = sorted({f"{name}: {text}" for result in results for name, texts in result.items() for text in texts})
-    text = "\n".join([as_text(rows), *broken])
-    try:
-        plot(rows, folder / "measures.png")
-    except ImportError:
-        return f"{text}\nno picture: matplotlib is not installed; type: {INSTALL}"
-    return text
+    return "\n".join(filter(None, (as_text(rows), *broken, write_report(rows, folder))))
 
 
 def rows_of(outcomes: Mapping[str, Sequence[bool]]) -> list[Row]:
