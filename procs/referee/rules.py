@@ -12,6 +12,9 @@ from procs.model.field import Field as SoccerField
 from procs.model.game_states import State
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 
+LEAST_HALF_S = 0.1
+"""Shortest half: a few ticks, so that a half begins before it ends."""
+
 
 class Rules(BaseModel):
     """Times and limits of a match."""
@@ -24,7 +27,7 @@ class Rules(BaseModel):
     Without commands a set piece then becomes play when it has been taken or its time is over, robots come back when
     their time beside the field is over, and a ball that is pushed off its spot in a stoppage is put back.
     """
-    half_s: PositiveFloat = 900.0
+    half_s: float = Field(default=900.0, ge=LEAST_HALF_S)
     """Length of a half, stoppages included (2016: 15 min)."""
     half_time_s: NonNegativeFloat = 5.0
     """Break between the halves (2016: at most 10 min)."""
@@ -34,7 +37,7 @@ class Rules(BaseModel):
     """The teams change ends after each half (2016)."""
     decide: bool = False
     """A draw is followed by overtime, and a further draw by penalties (2016)."""
-    overtime_half_s: PositiveFloat = 300.0
+    overtime_half_s: float = Field(default=300.0, ge=LEAST_HALF_S)
     """Length of each of the two halves of the overtime (2016: 5 min)."""
     penalties: int = Field(default=5, ge=1)
     """Penalties of each team after a drawn overtime; further pairs follow until one decides (2016)."""

@@ -1,6 +1,7 @@
 """The referee's rules as scripts: events from the field, and the calls that follow."""
 
 import pytest
+from pydantic import ValidationError
 
 from procs.model.events import Event, Kind
 from procs.model.field import Point
@@ -249,3 +250,10 @@ def test_positions_of_robots_at_a_set_piece(
 ) -> None:
     robots = {"cyan1": Point(-0.5 - 1.0 * (team is Team.NONE), 0.0), robot: Point(*place)}
     assert misplaced(Restart(state, team, CENTRE), robots) == ([] if allowed else [robot])
+
+
+@pytest.mark.parametrize("length", ["half_s", "overtime_half_s"])
+def test_half_lasts_for_some_ticks(length: str) -> None:
+    with pytest.raises(ValidationError, match=r"greater than or equal to 0\.1"):
+        Rules.model_validate({length: 1e-300})
+    assert getattr(Rules.model_validate({length: 0.1}), length) == 0.1

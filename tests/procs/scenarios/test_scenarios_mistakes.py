@@ -40,7 +40,7 @@ from tests.procs.scenarios.scenario_files import written
         (
             "settings: {world/referee: {half_s: -1}}",
             ScenarioError,
-            "world/referee: 'half_s' is -1; it should be greater than 0",
+            "world/referee: 'half_s' is -1; it should be greater than or equal to 0.1",
         ),
         ("settings: {world/crew: {actions: []}}", ScenarioError, "settings: world/crew has its actions under commands"),
         (
