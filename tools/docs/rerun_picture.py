@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from playwright.sync_api import sync_playwright
 
-from tools.docs.web_pictures import wait_for
+from fwk.program import FAILED, complain
+from tools.docs.web_pictures import page_url, wait_for
 
 CHROMIUM = "/usr/bin/chromium-headless-shell"
 GRAPHICS = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
@@ -24,8 +25,11 @@ _WAIT_MS = 120_000.0
 def main() -> None:
     """Writes docs/rerun.png."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("url", help="the address that 'fwk view --web' prints")
+    parser.add_argument("url", type=page_url, help="the address that 'fwk view --web' prints")
     arguments = parser.parse_args()
+    if not Path(CHROMIUM).exists():
+        complain(f"there is no {CHROMIUM}; type: apt install {Path(CHROMIUM).name}")
+        raise SystemExit(FAILED)
     wait_for(arguments.url)
     picture = picture_of(arguments.url, b"\x30\x80\x3c")
     cv2.imwrite(str(Path(__file__).parents[2] / "docs" / "rerun.png"), picture)

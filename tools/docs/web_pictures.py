@@ -6,12 +6,14 @@
 import argparse
 import shutil
 import socket
+from contextlib import suppress
 from pathlib import Path
 from urllib.parse import urlsplit
 
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from fwk.clock import monotonic_us, sleep_s
+from fwk.program import BAD_INPUT, FAILED, complain
 
 PROGRAM = "chromium-headless-shell"
 PICTURES = {
@@ -21,6 +23,7 @@ PICTURES = {
     "web-phone": "/view",
 }
 """Name of a picture to the page that it shows."""
+_PORTS = {"http": 80, "https": 443}
 _WAIT_MS = 60_000.0
 _SETTLED_MS = 4_000.0
 """From the first figures of a page to all of it."""
@@ -29,7 +32,7 @@ _SETTLED_MS = 4_000.0
 def main() -> None:
     """Writes the pictures into a folder."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("url", help="address of the console, such as http://127.0.0.1:8460")
+    parser.add_argument("url", type=page_url, help="address of the console, such as http://127.0.0.1:8460")
     parser.add_argument("run", help="name of the run")
     parser.add_argument("--out", type=Path, default=Path(__file__).parents[2] / "docs", help="folder of the pictures")
     arguments = parser.parse_args()
@@ -64,18 +67,40 @@ def take(browser: Browser, url: str, run: str, out: Path, settled_ms: float = _S
     return made
 
 
-def wait_for(url: str) -> None:
-    """Waits until a server listens at the address of a page."""
+def page_url(text: str) -> str:
+    """Returns the address of a page.
+
+    Raises:
+        ArgumentTypeError: the text is none.
+    """
+    with suppress(ValueError):  # of an impossible port
+        address = urlsplit(text)
+        if address.scheme in ("http", "https") and address.hostname and address.port != 0:
+            return text
+    raise argparse.ArgumentTypeError(f"'{text}' is not the address of a page, such as http://127.0.0.1:8460")
+
+
+def wait_for(url: str, longest_s: float = _WAIT_MS / 1000) -> None:
+    """Waits until a server listens at the address of a page.
+
+    Raises:
+        SystemExit: the machine cannot be reached, or no server listens for so long; the error says which.
+    """
     address = urlsplit(url)
-    end_us = monotonic_us() + round(_WAIT_MS * 1000)
+    end_us = monotonic_us() + round(longest_s * 1e6)
     while True:
         try:
-            socket.create_connection((str(address.hostname), address.port or 80)).close()
+            port = address.port or _PORTS[address.scheme]
+            socket.create_connection((str(address.hostname), port), longest_s).close()
             return
         except ConnectionRefusedError:
             if monotonic_us() > end_us:
-                raise
+                complain(f"no server listens at {url} for {longest_s:g} s; start the one whose page is shown")
+                raise SystemExit(FAILED) from None
             sleep_s(0.1)
+        except (OSError, UnicodeError) as error:
+            complain(f"{url} cannot be reached: {error}")
+            raise SystemExit(BAD_INPUT) from None
 
 
 def _settle(page: Page, settled_ms: float) -> None:
