@@ -156,16 +156,21 @@ def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: grou
     covariance = np.array(ball.covariance)[:2, :2]
     touching = piece.touched_by(tick, _CONTACT_S)
     return _Ball(
-        float(error @ error),
-        (ball.vx_m_s - truth.ball_vx_m_s) ** 2 + (ball.vy_m_s - truth.ball_vy_m_s) ** 2,
+        _counted(float(error @ error)),
+        _counted((ball.vx_m_s - truth.ball_vx_m_s) ** 2 + (ball.vy_m_s - truth.ball_vy_m_s) ** 2),
         surprise_of(covariance, error),
         math.dist((own.x_m, own.y_m), (truth.ball_x_m, truth.ball_y_m)) <= NEAR_M,
         math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s),
         "itself" if robot in touching else "another" if touching else "",
         not bounced and not piece.touched_by(tick, SETTLED_S),
         flies(truth),
-        (ball.z_m - truth.ball_z_m) ** 2,
+        _counted((ball.z_m - truth.ball_z_m) ** 2),
     )
+
+
+def _counted(square: float) -> float:
+    """Returns a squared error; that of a belief that is no number is infinite, so that it shows."""
+    return math.inf if math.isnan(square) else square
 
 
 def covers(covariance: Floats, error: Floats) -> bool:
@@ -174,8 +179,14 @@ def covers(covariance: Floats, error: Floats) -> bool:
 
 
 def surprise_of(covariance: Floats, error: Floats) -> float:
-    """Returns the square of an error (2) by its covariance (2, 2); infinite without a covariance."""
-    return float(error @ np.linalg.solve(covariance, error)) if covariance.any() else math.inf
+    """Returns the square of an error (2) by its covariance (2, 2); infinite for a matrix that covers nothing."""
+    return float(error @ np.linalg.solve(covariance, error)) if is_positive(covariance) else math.inf
+
+
+def is_positive(covariance: Floats) -> bool:
+    """Returns whether a matrix (2, 2) is positive definite: any other is no covariance, or claims an exact value."""
+    (xx_m2, xy_m2), (yx_m2, yy_m2) = covariance.tolist()
+    return bool(xx_m2 > 0.0 and 0.0 < xx_m2 * yy_m2 - xy_m2 * yx_m2 < math.inf)
 
 
 def _kicks(piece: Piece) -> Samples:
@@ -226,7 +237,7 @@ def _opponents(piece: Piece) -> Samples:
         matched = []
         for estimate in model.opponents:
             rival = min(rivals, key=lambda each: _between_m(estimate, each), default=None)
-            ghosts.append(rival is None or _between_m(estimate, rival) > _SAME_M)
+            ghosts.append(rival is None or not _between_m(estimate, rival) <= _SAME_M)  # one at NaN is a ghost, too
             if rival in near and not ghosts[-1]:
                 matched.append(rival.name)
                 errors_m2.append(_between_m(estimate, rival) ** 2)

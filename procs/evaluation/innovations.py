@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from procs.evaluation.beliefs import Samples, flies, placed_ticks
+from procs.evaluation.beliefs import Samples, flies, is_positive, placed_ticks
 from procs.evaluation.exposures import Frame, frames_of, pose_at
 from procs.evaluation.piece import Piece
 from procs.model.frames import Floats, to_world
@@ -39,8 +39,8 @@ def _innovations(piece: Piece) -> Iterator[tuple[Frame, Floats]]:
         model = piece.by_robot.get("world_model", {}).get(robot, {}).get(tick - 1)
         poses = piece.by_robot.get("pose", {}).get(robot, {})
         own = pose_at(poses, exposed)
-        truth = piece.truth.get(tick)
-        if not (percept.visible and model and model.ball.known) or own is None or truth is None:
+        truth, now = piece.truth.get(tick), poses.get(tick)
+        if not (percept.visible and model and model.ball.known and truth and now) or own is None:
             continue
         if tick in placed or flies(truth):
             continue
@@ -50,12 +50,12 @@ def _innovations(piece: Piece) -> Iterator[tuple[Frame, Floats]]:
         )
         seen_m, by_sight_m2, by_pose_m2 = to_world(
             own,
-            np.array(poses[tick].covariance),
+            np.array(now.covariance),
             np.array([(percept.x_m, percept.y_m)]),
             np.array([percept.covariance_m2]),
         )
         spread_m2 = by_sight_m2[0] + by_pose_m2[0] + np.array(model.ball.covariance)[:2, :2]
-        if np.linalg.det(spread_m2) <= 0.0:
+        if not is_positive(spread_m2):
             continue  # nothing is claimed
         innovation = np.linalg.solve(np.linalg.cholesky(spread_m2), seen_m[0] - expected_m)
         if innovation @ innovation <= _GATE:

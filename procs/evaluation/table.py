@@ -25,12 +25,17 @@ def rms(samples: Floats) -> float:
 
 def root_99(samples: Floats) -> float:
     """Returns the root of the 99th percentile of squared errors (n)."""
-    return float(np.sqrt(np.quantile(samples, 0.99))) if len(samples) else np.nan
+    return float(np.sqrt(_quantile(samples, 0.99))) if len(samples) else np.nan
 
 
 def high_95(samples: Floats) -> float:
     """Returns the 95th percentile of samples (n)."""
-    return float(np.quantile(samples, 0.95)) if len(samples) else np.nan
+    return _quantile(samples, 0.95) if len(samples) else np.nan
+
+
+def _quantile(samples: Floats, share: float) -> float:
+    """Returns a quantile of samples (n); between infinite ones nothing is interpolated."""
+    return float(np.quantile(samples, share, method="inverted_cdf" if np.isinf(samples).any() else "linear"))
 
 
 def mean(samples: Floats) -> float:
