@@ -2,7 +2,7 @@
 
 import socket
 
-from procs.refbox.protocol import ProtocolError, Stream
+from procs.refbox.protocol import Stream
 
 _BYTES = 65_536  # taken from the connection at a time
 _MESSAGES = 100  # handed out in a tick; a base station reports ten times a second
@@ -22,7 +22,7 @@ class Inbox:
         While some are left, no more bytes are taken from the connection.
 
         Raises:
-            ProtocolError: the peer sends a message that is too long; it is dropped, and those before it follow.
+            ProtocolError: the peer sends a message that is too long; it is dropped, and the others follow.
             EOFError: the peer sends no more, and all that it sent was returned; it may still read.
             OSError: the connection is lost.
         """
@@ -38,9 +38,5 @@ class Inbox:
             return
         if not data:
             raise EOFError("it closed the connection")
-        try:
-            for message in self._stream.feed(data):
-                self._unread.append(message)
-        except ProtocolError:
-            self._stream = Stream()
-            raise
+        for message in self._stream.feed(data):
+            self._unread.append(message)

@@ -79,9 +79,14 @@ def parse(data: bytes) -> Any:
         ProtocolError: it is not JSON.
     """
     try:
-        return json.loads(data)
+        return json.loads(data, parse_constant=_refused)
     except (ValueError, RecursionError) as error:  # lists may be nested deeper than Python's stack
         raise ProtocolError(f"{data[:_QUOTED]!r} is not JSON") from error
+
+
+def _refused(constant: str) -> Any:
+    """Refuses NaN and infinities, which Python reads, and JSON does not know."""
+    raise ValueError(f"JSON has no {constant}")
 
 
 def decode(data: bytes, addresses: Mapping[str, str]) -> Command:
@@ -117,14 +122,22 @@ class Stream:
 
     def __init__(self) -> None:
         self._rest = b""
+        self._drops = False  # the beginning of a message that is too long was dropped, and its end follows
 
     def feed(self, data: bytes) -> Iterator[bytes]:
         """Yields the messages that are complete, without their NUL.
 
         Raises:
-            ProtocolError: a message is too long.
+            ProtocolError: a message is too long; all of it is dropped, and those before and after it are yielded first.
         """
         *whole, self._rest = (self._rest + data).split(b"\0")
-        yield from (message for message in whole if message.strip())
-        if len(self._rest) > LONGEST:
+        if self._drops and whole:
+            del whole[0]
+            self._drops = False
+        yield from (message for message in whole if message.strip() and len(message) <= LONGEST)
+        is_new = not self._drops and len(self._rest) > LONGEST
+        self._drops |= is_new
+        if self._drops:
+            self._rest = b""
+        if is_new or any(len(message) > LONGEST for message in whole):
             raise ProtocolError(f"more than {LONGEST} bytes without a NUL")

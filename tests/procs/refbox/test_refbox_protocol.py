@@ -58,7 +58,7 @@ def test_command_as_bytes_and_back(command: Command, data: bytes) -> None:
         (b'{"command": "' + b"x" * 60_000 + b'"}', "'x{59} is not the name of a command"),
         (b"[" * 60_000, "is not JSON"),
         (b"\xff\xfe\x80", "is not JSON"),
-        (b"NaN", "has no command"),
+        (b"NaN", "is not JSON"),
     ],
 )
 def test_bytes_that_are_no_command(data: bytes, message: str) -> None:
