@@ -25,6 +25,7 @@ class Connection:
         self._dialled_us = 0
         self._inbox: Inbox | None = None
         self._again_us = 0
+        self._tries = 0  # without an answer; `localhost` may have two addresses, of which a RefBox listens at one
         self._retry_s = 0.0
         self._reason = ""  # why the RefBox cannot be reached
         self._unsent = b""
@@ -76,7 +77,7 @@ class Connection:
     def _dial(self, host: str, port: int, connect_s: float) -> None:
         """Begins to connect, or goes on, without waiting for the RefBox or the address of its name."""
         if self._lookup is None:
-            self._lookup, self._dialled_us = Lookup(host, port), self._clock.now_us
+            self._lookup, self._dialled_us = Lookup(host, port, self._tries), self._clock.now_us
         if not self._lookup.done:  # the next try waits for it, too
             if self._clock.since_s(self._dialled_us) >= connect_s:
                 self._fail(f"no address of that name for {connect_s:g} s")
@@ -91,6 +92,7 @@ class Connection:
             return
         if dialled is not None:
             dialled.close()
+        self._tries += 1
         self._fail(f"no answer for {connect_s:g} s" if code in _UNDER_WAY else reason)
 
     def _reach(self, found: Lookup) -> tuple[int, str]:
@@ -98,7 +100,10 @@ class Connection:
         if found.reason:
             return errno.EHOSTUNREACH, found.reason
         if self._dialling is None:
-            self._dialling = socket.socket(found.family)
+            try:
+                self._dialling = socket.socket(found.family)
+            except OSError as error:  # this machine does not know IPv6, or the process has no descriptor left
+                return errno.EHOSTUNREACH, str(error.strerror)
             self._dialling.setblocking(False)
             self._dialled_us = self._clock.now_us
         code = self._dialling.connect_ex(found.address)

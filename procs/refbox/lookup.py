@@ -11,13 +11,14 @@ class Lookup:
     A name server that does not answer holds its caller up for many seconds, and cannot be asked without waiting.
     """
 
-    def __init__(self, host: str, port: int) -> None:
+    def __init__(self, host: str, port: int, turn: int = 0) -> None:
+        """Begins; of several addresses of the machine each one has its `turn`, from 0."""
         self.family = socket.AF_INET
         self.address: Any = None
         """Address for `socket.connect`; None until the host is found."""
         self.reason = ""
         """Why the host was not found."""
-        self._host, self._port = host, port
+        self._host, self._port, self._turn = host, port, turn
         try:
             self._find(socket.AI_NUMERICHOST)
         except OSError:
@@ -35,5 +36,6 @@ class Lookup:
             self.reason = str(error)
 
     def _find(self, flags: int) -> None:
-        (family, *_, address), *_ = socket.getaddrinfo(self._host, self._port, type=socket.SOCK_STREAM, flags=flags)
+        found = socket.getaddrinfo(self._host, self._port, type=socket.SOCK_STREAM, flags=flags)
+        family, *_, address = found[self._turn % len(found)]
         self.family, self.address = family, address
