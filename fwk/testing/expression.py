@@ -70,7 +70,7 @@ class Expression:
             cure = "; join comparisons such as a.b == 1 with and, or, not" if error.msg == "invalid syntax" else ""
             raise ExpressionError(f"'{text}': {error.msg}{cure}") from error
         except (ValueError, RecursionError, MemoryError) as error:  # bytes that are no text; a hundred brackets
-            raise ExpressionError(f"'{text:.60}': cannot be read; write it shorter ({error})") from error
+            raise _unreadable(text, error) from error
         for node in ast.walk(tree):
             self._check(node)
         self._reads = any(isinstance(node, ast.Name) for node in ast.walk(tree))
@@ -87,7 +87,7 @@ class Expression:
             self._tree = Bounding().visit(tree)
             self._code = compile(self._tree, "<condition>", "eval")
         except (RecursionError, MemoryError) as error:
-            raise ExpressionError(f"'{text:.60}': cannot be read; write it shorter ({error})") from error
+            raise _unreadable(text, error) from error
 
     def value(self, newest: Callable[[str], Any]) -> Any:
         """Returns the value; `newest` gives the newest message of a channel.
@@ -153,6 +153,12 @@ class Expression:
             raise ExpressionError(f"'{self.text}': '{node.attr}' begins with an underscore")
         if isinstance(node, ast.Call) and (not isinstance(node.func, ast.Name) or node.func.id not in self._words):
             raise ExpressionError(f"'{self.text}': calls only {', '.join(sorted(self._words))}")
+
+
+def _unreadable(text: str, error: Exception) -> ExpressionError:
+    """Says that Python cannot read a text, and why if Python says so."""
+    why = f" ({error})" if str(error) else ""
+    return ExpressionError(f"'{text:.60}': cannot be read; write it shorter{why}")
 
 
 def _namespaces_in(tree: ast.AST) -> set[ast.expr]:

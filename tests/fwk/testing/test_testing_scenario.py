@@ -52,6 +52,7 @@ def test_value_of_a_condition(text: str, value: Any) -> None:
         ("doubl > 3", r"'doubl > 3': there is no 'doubl'; did you mean 'double'\?"),
         ("max(wrld, 3) > 3", "there is no 'wrld'; there are abs, double, len"),
         ("-" * 2000 + "1", "cannot be read; write it shorter"),
+        ("-" * 20_000 + "1", "^'-{60}': cannot be read; write it shorter$"),
     ],
 )
 def test_text_that_is_not_a_condition(text: str, message: str) -> None:
