@@ -24,6 +24,8 @@ MESSAGES: Mapping[str, type[Any]] = {
     "referee": referee_command_t,
 }
 """Commands by their names in scenarios, and their types."""
+_KINDS = {float: "a number", bool: "true or false", str: "a text"}
+"""Types of the commands' fields, in words."""
 
 
 class Action(BaseModel):
@@ -89,7 +91,7 @@ def field_mistakes(fields: Mapping[str, Any], message: Any) -> list[str]:
         wanted = type(getattr(message, name))
         fits = isinstance(value, (int, float)) if wanted is float else isinstance(value, wanted)
         if not fits or (isinstance(value, bool) and wanted is not bool):
-            found.append(f"{name} is {value!r}; it should be a {'number' if wanted is float else wanted.__name__}")
+            found.append(f"{name} is {value!r}; it should be {_KINDS[wanted]}")
         elif wanted is float and not math.isfinite(value):
             found.append(f"{name} is {value!r}; it should be a finite number")
     return found

@@ -226,7 +226,7 @@ from tests.procs.scenarios.scenario_files import written
         (
             "commands: [{freeze: {frozen: 1}}]",
             ScenarioError,
-            "'commands.0' is {'freeze': {'frozen': 1}}; freeze: frozen is 1; it should be a bool",
+            "'commands.0' is {'freeze': {'frozen': 1}}; freeze: frozen is 1; it should be true or false",
         ),
         ("commands: [{freeze: true}]", ScenarioError, "'commands.0.freeze' is true; it should be a mapping"),
         (
