@@ -10,6 +10,7 @@ import numpy as np
 from lcmtypes.soccer import pass_agreement_t
 from procs.model.frames import Floats
 from procs.model.geometry import wrap_rad
+from procs.model.robot import FASTEST_RAD_S
 from procs.world_model.frame_pace import FramePace
 
 _LEAST_M = 0.005  # deviation of a position that is added to the stated one
@@ -48,7 +49,7 @@ class Mate:
     agreement: pass_agreement_t = field(default_factory=pass_agreement_t)
     """Its agreement about a pass."""
     omega_rad_s: float = 0.0
-    """Turning speed between its last two messages."""
+    """Turning speed between its last two messages; 0 for one that no robot reaches."""
     overtaken: bool = False
     """Whether a newer message of it arrived earlier."""
 
@@ -136,7 +137,8 @@ class Team:
             return None
         stamps_s.append(mate.told_s)
         if abs(passed_s) <= _TURNING_S and newest.localized and mate.localized:
-            mate.omega_rad_s = wrap_rad(mate.heading_rad - newest.heading_rad) / passed_s
+            omega_rad_s = wrap_rad(mate.heading_rad - newest.heading_rad) / passed_s
+            mate.omega_rad_s = omega_rad_s if abs(omega_rad_s) < FASTEST_RAD_S else 0.0  # it was corrected, not turned
         if not mate.overtaken:
             heard.newest = mate
         return mate

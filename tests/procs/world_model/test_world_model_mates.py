@@ -246,3 +246,20 @@ def test_mate_without_a_name_or_behind_the_walls_is_left_out(name: str, x_m: flo
         robot.bench.iterate()
     assert [mate.name for mate in robot.world.mates] == ["cyan3"]
     assert not robot.world.ball.known
+
+
+@pytest.mark.parametrize(("apart_us", "turned_rad"), [(1, 0.01), (100_000, 3.1)])
+def test_mate_whose_heading_jumps_does_not_turn(apart_us: int, turned_rad: float) -> None:
+    """It has found its place anew, or its clock has; the ball in its mouth rests."""
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for heading_rad, ago_us in ((0.0, apart_us), (turned_rad, 0)):
+        robot.sense(None, [])
+        message = team_message_t(robot="cyan2", localized=True, ball_held=True, x_m=3.0, heading_rad=heading_rad)
+        message.header.time_us = 200_000 - ago_us
+        message.pose_covariance = np.diag((1e-4, 1e-4, 1e-4)).tolist()
+        while robot.bench.time_us < 150_000:
+            robot.bench.iterate()
+        robot.bench.port("team_inbox").put(messages=[message])
+        robot.bench.iterate()
+    assert robot.world.ball.known
+    assert math.hypot(robot.world.ball.vx_m_s, robot.world.ball.vy_m_s) < 0.1
