@@ -50,3 +50,23 @@ def test_socket_that_cannot_be_made_is_told_once(monkeypatch: pytest.MonkeyPatch
     assert [line.text for line in bench.logged] == [
         f"no RefBox at 127.0.0.1:28097: {os.strerror(number)}; it is tried again every 0.2 s"
     ]
+
+
+def test_machine_that_is_switched_off_is_noticed_in_20_s(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It says no farewell; the system has to ask, and must not send on for a quarter of an hour."""
+    made: list[socket.socket] = []
+
+    class Recorded(socket.socket):
+        def connect_ex(self, address: Any) -> int:
+            made.append(self)
+            return super().connect_ex(address)
+
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        bench = Bench(RefBoxClient, "world/refbox", port=listening.getsockname()[1])
+        monkeypatch.setattr(socket, "socket", Recorded)
+        bench.iterate()
+        asked, tcp = made[0].getsockopt, socket.IPPROTO_TCP
+        assert asked(socket.SOL_SOCKET, socket.SO_KEEPALIVE)
+        idle_s = asked(tcp, socket.TCP_KEEPIDLE) + asked(tcp, socket.TCP_KEEPINTVL) * asked(tcp, socket.TCP_KEEPCNT)
+        assert (idle_s, asked(tcp, socket.TCP_USER_TIMEOUT)) == (20, 20_000)
+        bench.finalize()
