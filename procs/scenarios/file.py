@@ -123,6 +123,8 @@ def _mistakes(scenario: Scenario, config: SimulatorConfig) -> Iterator[str]:
     yield from team_mistakes(thinking, scenario.settings)
     yield from ball_mistakes(scenario.ball, config.field)
     yield from command_mistakes(scenario.commands, scenario.everyone, scenario.time_s, config)
+    if scenario.ball and scenario.time_s <= _BALL_S:
+        yield f"ball: it is put to its place at {_BALL_S:g} s; the scenario ends at {scenario.time_s:g} s"
     if not scenario.conditions:
         yield "nothing has to happen; give eventually, in_order, always or at_end"
 

@@ -113,6 +113,11 @@ from tests.procs.scenarios.scenario_files import written
             ScenarioError,
             "at_s is 1; the scenario",
         ),
+        (
+            "at_end: [reasons]\nball: {x_m: 1.0}\ntime_s: 0.1",
+            ScenarioError,
+            "mine.yaml:2: ball: it is put to its place at 0.1 s; the scenario ends at 0.1 s",
+        ),
         ("robots: [cyan1]\nat_end: [frobnicate(cyan1)]", ScenarioError, "calls only abs, ball"),
         ("eventually: ['x(ball']", ScenarioError, "never closed"),
         ("dummies: [cyan2]\neventually: [x(cyan3) > 0]", ScenarioError, "no robot 'cyan3'; did you mean 'cyan2'?"),
