@@ -50,7 +50,7 @@ class Scenario(Expectations):
     rules: dict[str, Any] = {}
     """Settings of the referee."""
     realism: Realism = "realistic"
-    """Preset of the simulator."""
+    """Preset of bodies, ball, percepts and radio, and of the errors that the robots state."""
     settings: dict[str, dict[str, Any]] = {}
     """Further settings, by component: `cyan2/agent`."""
     commands: list[Action] = []

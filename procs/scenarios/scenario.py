@@ -15,7 +15,7 @@ from procs.drivers.base import Base
 from procs.drivers.kicker import Kicker
 from procs.localization.localization import Localization
 from procs.model.right_name import right_name
-from procs.model.robot import team_of
+from procs.model.robot import number_of, team_of
 from procs.referee.referee import Referee
 from procs.scenarios.crew import Crew
 from procs.scenarios.dummy import Dummy
@@ -156,17 +156,19 @@ def _settings(scenario: Scenario) -> tuple[Settings, dict[str, dict[str, str]], 
     if scenario.ball:  # play begins at once: the kick-off is free, and the ball is put elsewhere
         rules = {"kick_off_stoppage_s": 0.0, "positions_s": 0.0} | rules
     settings: Settings = {
-        "world/simulator": {"starts": scenario.places, "realism": scenario.realism},
+        "world/simulator": {"starts": scenario.places},
         "world/referee": rules,
         CREW: {"actions": [action.model_dump(exclude_none=True) for action in scenario.actions]},
     }
     channels, turns = {}, {}
     for name, part in _components(scenario).items():
+        config = _config(part)
+        if config and "realism" in config.model_fields:
+            settings[name] = settings.get(name, {}) | {"realism": scenario.realism}
         if part is Percepts:
-            settings[name], turns[name] = {"realism": scenario.realism}, (2, 0)
+            turns[name] = (2, number_of(name.partition("/")[0]))  # robots take turns, as in the launch files
         if part is Radio:
             team = name.removeprefix("team_").removesuffix("/radio")
-            settings[name] = {"realism": scenario.realism}
             channels[name] = {port: channel.format(team=team) for port, channel in _RADIO.items()}
     for component, more in scenario.settings.items():
         settings[component] = settings.get(component, {}) | more

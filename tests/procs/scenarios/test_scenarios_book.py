@@ -2,14 +2,16 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from fwk.testing import ExpressionError, Verdict
+from lcmtypes.soccer import line_points_t
 from procs.scenarios import command, evaluation
 from procs.scenarios.dummy import Dummy
 from procs.scenarios.file import BOOK, Scenario, parsed
-from procs.scenarios.scenario import outcome, read, run
+from procs.scenarios.scenario import outcome, read, run, system_of
 from tests.procs.scenarios.scenario_files import written
 
 SCENARIOS = sorted(BOOK.glob("*.yaml"))
@@ -41,6 +43,26 @@ def test_book_has_scenarios_that_say_what_they_are_for() -> None:
 def test_same_scenario_ends_at_the_same_time_again() -> None:
     path = BOOK / "shot-on-an-empty-goal.yaml"
     assert run(path) == run(path)
+
+
+@pytest.mark.parametrize("realism", ["none", "harsh"])
+def test_realism_reaches_bodies_percepts_radio_and_stated_errors(realism: str) -> None:
+    text = f"seeing: [cyan3]\nrobots: [cyan2]\nrealism: {realism}\nalways: [x(cyan3) < 9]\ntime_s: 1\n"
+    runners = system_of(parsed(text, "mine.yaml")).runners
+    parts = ["world/simulator", "team_cyan/radio", "cyan2/base"]
+    parts += [f"cyan3/{part}" for part in ("percepts", "base", "localization", "world_model")]
+    stated: dict[str, Any] = {part: runners[part].component for part in parts}
+    assert {part: component.config.realism for part, component in stated.items()} == dict.fromkeys(parts, realism)
+
+
+def test_robots_see_in_turns_as_in_the_launch_files() -> None:
+    system = system_of(parsed("seeing: [cyan2, cyan3]\nalways: [x(cyan3) < 9]\ntime_s: 1\n", "mine.yaml"))
+    system.tick(4)
+    seen = {
+        name: [line_points_t.decode(data) for data in system.sent[f"{name}/line_points"]] for name in ("cyan2", "cyan3")
+    }
+    assert [message.header.tick for message in seen["cyan2"]] == [2, 4]
+    assert [message.header.tick for message in seen["cyan3"]] == [1, 3]
 
 
 def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
