@@ -136,7 +136,7 @@ class Match:
 
     def start(self, sight: Sight | None = None) -> None:
         """Lets the set piece be taken; waits for a ball that was just given to the crew."""
-        waits = sight is not None and self._ball.is_under_way(sight.ball, self.rules.field)
+        waits = sight is not None and self._ball.is_under_way(sight.ball, self.rules)
         self._starting = self.stopped and waits
         if self._starting:
             return

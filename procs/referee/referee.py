@@ -114,7 +114,9 @@ class Referee(Component):
         told = any(event.kind in LEAVES for event in sight.events)
         if told or report.ball_in_field or report.frozen or not self.match_events.has_value or self._whistle.stopped:
             return sight
-        return sight._replace(events=[*sight.events, left_unseen(sight.ball, sight.last_touch, self.config.field)])
+        radius_m = self.config.ball.radius_m
+        unseen = left_unseen(sight.ball, sight.last_touch, self.config.field, radius_m)
+        return sight._replace(events=[*sight.events, unseen])
 
     def _sight(self) -> Sight:
         ball, name_of = self.match_events.value, self._names.of_player

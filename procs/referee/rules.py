@@ -8,6 +8,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, PositiveFloat
 
+from procs.model.ball import BALL, BallModel
 from procs.model.field import Field as SoccerField
 from procs.model.game_states import State
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
@@ -99,6 +100,8 @@ class Rules(BaseModel):
     """Measures of the field."""
     robot: RobotModel = ROBOT
     """Geometry of the robots, by which pushing is judged."""
+    ball: BallModel = BALL
+    """Size of the ball, which is out when it is wholly over a line."""
     players: Players = dict(PLAYERS)
     """Team and number of each robot."""
 

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
-from procs.model.ball import RADIUS_M
 from procs.model.events import Event, Kind
 from procs.model.field import SIDES, Field, Point
 from procs.model.robot import number_of
@@ -67,10 +66,10 @@ class Sight(NamedTuple):
         return robots[0] if len(robots) > 1 else ""
 
 
-def left_unseen(ball: Point, last_touch: str, field: Field) -> Event:
+def left_unseen(ball: Point, last_touch: str, field: Field, ball_radius_m: float) -> Event:
     """Returns the event of a ball that lies outside the field, and left it while there was no referee."""
-    if any(field.in_goal(*ball, side, RADIUS_M) for side in SIDES):
+    if any(field.in_goal(*ball, side, ball_radius_m) for side in SIDES):
         kind = Kind.GOAL
     else:
-        kind = Kind.OUT_SIDE if abs(ball.y_m) > field.half_width_m + RADIUS_M else Kind.OUT_END
+        kind = Kind.OUT_SIDE if abs(ball.y_m) > field.half_width_m + ball_radius_m else Kind.OUT_END
     return Event(kind, last_touch, "", *ball, 0.0)

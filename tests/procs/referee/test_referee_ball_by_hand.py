@@ -1,15 +1,15 @@
-"""A ball that a person puts down outside the lines has left the field, off no robot: it is dropped."""
+"""A ball that a person puts down outside the lines has left the field, off no robot; balls of any size."""
 
 import pytest
 
 from fwk.testing import MemorySystem
 from lcmtypes.soccer import freeze_world_t, game_state_t, place_ball_t, referee_command_t
 from procs.model.events import Event, Kind
-from procs.model.field import Point
+from procs.model.field import Field, Point
 from procs.model.game_states import State
 from procs.referee.orders import carry_out
 from procs.referee.referee import Referee
-from procs.referee.sight import Sight
+from procs.referee.sight import Sight, left_unseen
 from procs.scenarios.dummy import Dummy
 from procs.simulation.simulator import Simulator
 from tests.procs.referee.script import Script
@@ -103,3 +103,20 @@ def test_deciding_penalty_without_its_ball_is_repeated(kind: Kind) -> None:
     assert match.whistle.shootout is not None
     assert set(match.whistle.shootout.shots.values()) == {0}, "no miss"
     assert match.started().whistle.spot == match.ball
+
+
+@pytest.mark.parametrize(("radius_m", "put_back"), [(0.11, True), (0.3, False)])
+def test_ball_of_any_size_is_out_when_wholly_over_the_line(radius_m: float, put_back: bool) -> None:
+    script = Script(ball={"radius_m": radius_m}, stoppage_s=5.0).playing()
+    script.tick(Event(Kind.OUT_SIDE, "cyan2", "", 2.0, 7.5, 1.0))
+    script.wait(0.6)
+    spot, placements = script.whistle.spot, script.whistle.placements
+    script.robots["magenta2"] = Point(spot.x_m, spot.y_m - 0.3)
+    script.ball = Point(spot.x_m, 7.2)
+    script.wait(0.1)
+    assert (script.whistle.placements > placements) is put_back
+
+
+@pytest.mark.parametrize(("radius_m", "kind"), [(0.11, Kind.OUT_SIDE), (0.3, Kind.OUT_END)])
+def test_ball_that_left_unseen_is_out_over_a_line_by_its_size(radius_m: float, kind: Kind) -> None:
+    assert left_unseen(Point(11.35, 7.2), "cyan2", Field(), radius_m).kind is kind
