@@ -128,6 +128,19 @@ def test_penalty_is_lobbed_over_a_keeper_in_the_middle() -> None:
     assert decide(seen, penalty, holds_ball=True, ticks=6).skill == "lob"
 
 
+@pytest.mark.parametrize("stopped", [True, False])
+def test_taker_of_a_penalty_faces_the_goal(stopped: bool) -> None:
+    """It once turned to a mate, took the ball from the goal's side, and shot 3 s later."""
+    spot, supporter = Point(7.4, 0.0), robot("cyan3", 4.0, 3.0, role=SUPPORTER)
+    penalty, tactics = Game(State.PENALTY, stopped, Whose.OURS, spot), Tactics(FIELD)
+    order = tactics.decide(
+        view(robot("cyan2", 6.0, 0.0), ball(*spot), (supporter,)), penalty, job(ATTACKER), False, 0.05
+    )
+    assert (order.skill, order.heading_rad) == ("goto" if stopped else "get_ball", 0.0)
+    assert order.place.x_m <= spot.x_m
+    assert not tactics.passing.said.receiver
+
+
 def test_while_stopped_the_taker_waits_behind_the_ball() -> None:
     game = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(2.0, 1.0))
     order = decide(view(robot("cyan2", -2.0, 0.0), ball(2.0, 1.0)), game)
