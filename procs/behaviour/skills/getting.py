@@ -14,12 +14,14 @@ _HANDLING_ON_M = 1.0  # from the ball the handling is on
 _PRESSED_M = 0.04  # by which the robot aims too near to the ball, to press it into the mouth
 _STAGING_M = 0.75  # behind the ball of a set piece, where the robot turns towards it
 _ALIGNED_RAD = 0.9  # a robot whose way to that ball differs more from the kick's direction comes from beside
-_FACING_RAD = 0.25  # the mouth faces the ball within this angle
-_WAITING_M = 0.14  # from the body to the ball of a set piece until the mouth faces it
+_FACING_RAD, _GOAL_FACING_RAD = 0.25, 0.45  # the mouth faces that ball, or one before the own goal, within this angle
+_WAITING_M = 0.14  # from the body to the ball of a set piece until the mouth faces it ...
+_GOAL_WAITING_M = 0.25  # ... or to the ball before the own goal
+_OWN_GOAL_M, _BESIDE_GOAL_M = 0.8, 0.2  # a ball so near to the own goal, or so far beside it, may roll into it
 _ENTRY_M_S = 0.25  # relative to the ball, which bounces off a faster mouth
 _NEAR_M = 1.0  # so near to the ball the robot gets slower ...
 _SOFT_1_S = 2.0  # ... by this speed for each metre, because it follows its commands late
-_GENTLE_1_S = 1.2  # the same at a set piece, which is not to be bumped away
+_GENTLE_1_S = 1.2  # the same at a set piece, and before the own goal: that ball is not to be bumped away
 _SLOW_M_S = 0.5  # a faster ball has to be caught first
 _CONTEST_M = 1.2  # a rival so near to the ball leaves no time for that
 HELD_M = 0.14
@@ -109,7 +111,8 @@ class _Capture(StateMachine):
 class GetBall(_Capture):
     """Drives to the ball, mouth first; if an opponent has the ball, from the side of the own goal.
 
-    A set piece's ball it takes from behind, so that it can play at once.
+    A set piece's ball it takes from behind, so that it can play at once. A ball between it and its own goal it touches
+    with the mouth alone, as any other touch would push it in.
     """
 
     def _opponent_has_it(self, scene: Scene) -> bool:
@@ -122,10 +125,10 @@ class GetBall(_Capture):
         return abs(wrap_rad(way_rad - scene.heading_rad)) > _ALIGNED_RAD
 
     def _set_piece_not_faced(self, scene: Scene) -> bool:
-        if not scene.set_piece:
-            return False
-        facing_rad = bearing_rad(scene.view.own.place, scene.view.ball.place)
-        return abs(wrap_rad(facing_rad - scene.view.own.heading_rad)) >= _FACING_RAD
+        return scene.set_piece and _off_mouth_rad(scene) >= _FACING_RAD
+
+    def _before_own_goal_not_faced(self, scene: Scene) -> bool:
+        return _is_before_own_goal(scene) and _off_mouth_rad(scene) >= _GOAL_FACING_RAD
 
     def _contest(self, scene: Scene) -> Step:
         meeting = _meeting(scene)
@@ -138,10 +141,12 @@ class GetBall(_Capture):
         return _approach(scene, Drive(place, scene.heading_rad, avoid_ball=True))
 
     def _face(self, scene: Scene) -> Step:
-        view = scene.view
-        facing_rad = bearing_rad(view.own.place, view.ball.place)
-        place = ahead(view.ball.place, facing_rad, -(view.bodies.beside_m + _WAITING_M))
-        return _approach(scene, Drive(place, facing_rad))
+        return _approach(scene, _waiting(scene, _WAITING_M))
+
+    def _face_before_goal(self, scene: Scene) -> Step:
+        drive = _waiting(scene, _GOAL_WAITING_M)
+        limit_m_s = _ENTRY_M_S + _GENTLE_1_S * math.dist(scene.view.own.place, drive.place)
+        return _approach(scene, drive._replace(speed_m_s=min(limit_m_s, scene.speed_m_s or math.inf)))
 
     STATES = (
         State(
@@ -153,11 +158,13 @@ class GetBall(_Capture):
                 State("contest", _contest),
                 State("go behind it", _go_behind),
                 State("face it", _face),
+                State("turn before the own goal", _face_before_goal),
             ),
             choice=(
                 Exit(_opponent_has_it, "contest"),
                 Exit(_set_piece_from_beside, "go behind it"),
                 Exit(_set_piece_not_faced, "face it"),
+                Exit(_before_own_goal_not_faced, "turn before the own goal"),
                 *_Capture._FOUND,
             ),
         ),
@@ -222,6 +229,27 @@ def _passer(scene: Scene) -> Robot | None:
     return next((mate for mate in scene.view.mates if mate.agreement.receiver == own), None)
 
 
+def _off_mouth_rad(scene: Scene) -> float:
+    """Returns the angle between the way to the ball and the robot's heading."""
+    facing_rad = bearing_rad(scene.view.own.place, scene.view.ball.place)
+    return abs(wrap_rad(facing_rad - scene.view.own.heading_rad))
+
+
+def _is_before_own_goal(scene: Scene) -> bool:
+    """Returns whether a slow ball lies between the robot and its own goal, so near that a touch may push it in."""
+    ball, field = scene.view.ball, scene.field
+    near = ball.place.x_m < _OWN_GOAL_M - field.half_length_m and ball.speed_m_s < _SLOW_M_S
+    beside = abs(ball.place.y_m) > field.goal_width_m / 2 + _BESIDE_GOAL_M
+    return near and not beside and scene.view.own.place.x_m > ball.place.x_m
+
+
+def _waiting(scene: Scene, off_m: float) -> Drive:
+    """Returns the drive to the nearest place whose distance from the body to the ball is `off_m`, mouth to the ball."""
+    own, ball, bodies = scene.view.own.place, scene.view.ball.place, scene.view.bodies
+    facing_rad = bearing_rad(own, ball)
+    return Drive(ahead(ball, facing_rad, -(bodies.beside_m + off_m)), facing_rad)
+
+
 def _meeting(scene: Scene) -> Point:
     return ballistics.meet(scene.view).place
 
@@ -264,8 +292,8 @@ def drive_to(scene: Scene) -> Drive:
     gap_m = max(0.0, math.dist(own.place, ball.place) - scene.view.bodies.held_ball_m)
     limit_m_s = max(_ENTRY_M_S, _ENTRY_M_S + _SOFT_1_S * gap_m + flees_m_s)
     contested = ball.is_near(scene.view.opponents, _CONTEST_M)
-    if scene.set_piece:
-        limit_m_s = min(limit_m_s, _ENTRY_M_S + _GENTLE_1_S * gap_m)
+    if scene.set_piece or (_is_before_own_goal(scene) and not contested):
+        limit_m_s = min(limit_m_s, _ENTRY_M_S + _GENTLE_1_S * gap_m, scene.speed_m_s or math.inf)
     elif contested or gap_m > _NEAR_M or ball.speed_m_s > _SLOW_M_S:
         limit_m_s = scene.speed_m_s
     elif scene.speed_m_s:

@@ -93,6 +93,15 @@ def test_set_pieces_ball_is_taken_from_behind() -> None:
     assert not drive(GetBall().step(scene(behind, set_piece=True))).avoid_ball
 
 
+def test_ball_before_the_own_goal_is_touched_with_the_mouth_alone() -> None:
+    for heading_rad, waits in ((0.0, True), (math.pi, False)):
+        seen = view(robot("cyan1", -10.4, 0.2, heading_rad), ball(-10.8, 0.2))
+        place = drive(GetBall().step(scene(seen))).place
+        assert (math.dist(place, seen.ball.place) > 0.5) is waits
+    beside = view(robot("cyan1", -10.4, 2.0), ball(-10.8, 2.0))
+    assert math.dist(drive(GetBall().step(scene(beside))).place, beside.ball.place) < 0.4
+
+
 def test_ball_of_an_opponent_is_attacked_from_own_goal_side() -> None:
     seen = view(robot("cyan2", 1.0, 2.0), ball(0.0, 0.0), (), (robot("", 0.33, 0.0),))
     tackle = drive(GetBall().step(scene(seen)))
