@@ -240,7 +240,8 @@ class Localization(Component):
         self._turning_rad_s = now.omega_rad_s if plausible(now.omega_rad_s) else 0.0
         way_m = rotation(-before.heading_rad - turn_rad / 2) @ (now.x_m - before.x_m, now.y_m - before.y_m)
         longest_s = max(passed_s, self.clock.period_s)
-        if np.hypot(*way_m) > FASTEST_M_S * longest_s or abs(turn_rad) > FASTEST_RAD_S * longest_s:
+        too_far = np.hypot(*way_m) > FASTEST_M_S * longest_s or abs(turn_rad) > FASTEST_RAD_S * longest_s
+        if too_far or now.path_length_m < before.path_length_m:
             way_m, turn_rad = np.zeros(2), 0.0  # the driver restarted: its frame has moved, not the robot
         if imu_is_sound:
             rate_rad_s = self.imu.value.yaw_rate_rad_s

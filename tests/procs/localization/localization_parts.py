@@ -39,6 +39,7 @@ class FakeRobot:
         self.clutter = clutter
         self.pose = np.zeros(3)
         self.odometry = np.zeros(3)
+        self.path_m = 0.0
         self.drift_rad = 0.03 * self.rng.standard_normal()
         self.scale = 1 + 0.03 * self.rng.standard_normal(2)
         self.velocity = np.zeros(3)
@@ -57,6 +58,7 @@ class FakeRobot:
         measured[:2] *= self.scale * (1 + 0.05 * self.rng.standard_normal(2))
         measured[2] *= 1 + 0.05 * self.rng.standard_normal()
         self.odometry = self._moved(self.odometry, measured)
+        self.path_m += float(np.hypot(*measured[:2])) * PERIOD_S
         self.drift_rad += 0.03 * math.sqrt(PERIOD_S / 60) * self.rng.standard_normal()
 
     @staticmethod
@@ -93,7 +95,8 @@ class FakeRobot:
         bench.port("line_points").put(x_m=x_m.tolist(), y_m=y_m.tolist(), capture_us=max(0, capture_us))
         x, y, heading = self.odometry.tolist()
         vx_m_s, vy_m_s, _ = self.measured.tolist()
-        bench.port("odometry").put(x_m=x, y_m=y, heading_rad=heading, vx_m_s=vx_m_s, vy_m_s=vy_m_s)
+        way = {"x_m": x, "y_m": y, "heading_rad": heading, "path_length_m": self.path_m}
+        bench.port("odometry").put(**way, vx_m_s=vx_m_s, vy_m_s=vy_m_s)
         compass = wrap_rad(self.pose[2] + self.drift_rad + 0.03 * self.rng.standard_normal())
         bench.port("imu").put(
             heading_rad=compass, yaw_rate_rad_s=float(self.velocity[2] + 0.02 * self.rng.standard_normal())

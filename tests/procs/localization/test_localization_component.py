@@ -162,6 +162,31 @@ def test_odometry_that_restarts_does_not_move_the_robot() -> None:
     assert np.hypot(*robot.error(bench)[:2]) < 0.05
 
 
+def stop_and_lose_odometry(bench: Bench, robot: FakeRobot, count: int) -> None:
+    """Drives at 2 m/s from (-6, 2), stops the robot, and shows `count` frames without odometry."""
+    for _ in range(30):
+        robot.drive(np.array((2.0, 0.0, 0.0)))
+        robot.show(bench)
+        bench.iterate()
+    for _ in range(count):
+        robot.drive(np.zeros(3))
+        robot.show(bench)
+        bench.port("odometry").waiting.clear()
+        bench.iterate()
+
+
+def test_odometry_that_restarts_after_a_gap_moves_no_robot() -> None:
+    """A robot could have driven the 4 m back to the new origin in the gap."""
+    robot = FakeRobot(seed=6)
+    robot.pose = np.array((-6.0, 2.0, 0.0))
+    bench = Bench(Localization, start_x_m=-6.0, start_y_m=2.0, start_heading_rad=0.0)
+    stop_and_lose_odometry(bench, robot, 12)
+    robot.odometry, robot.path_m = np.zeros(3), 0.0
+    for _ in range(5):
+        assert all(frames(bench, robot, 1))
+        assert np.hypot(*robot.error(bench)[:2]) < 0.1
+
+
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e300, -1e300])
 def test_impossible_values_are_ignored(value: float) -> None:
     robot = FakeRobot(seed=23)
