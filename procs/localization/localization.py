@@ -25,6 +25,7 @@ from procs.vision.calibration import MirrorConfig
 
 _SHORT_S = 0.05  # up to this age of an exposure, the velocity of the last tick describes the motion well enough
 _AHEAD_S = 0.02  # clocks of cameras may be ahead by this much
+_ODOMETRY_S = 0.5  # a velocity counts for so long; then the robot counts as standing, as with silent wheels
 _COMPASS_S = 0.5  # a heading of the compass counts for so long, turned on by gyro or wheels
 _USUAL = MirrorConfig().mirror()  # the mirror for which the expected errors are stated
 _AWAY_M = 2.0  # distance at which mirrors are compared
@@ -115,6 +116,7 @@ class Localization(Component):
         start = (config.start_x_m, config.start_y_m, config.start_heading_rad)
         given = [value for value in start if value is not None]
         self._last: odometry_t | None = None
+        self._velocity_m_s = (0.0, 0.0)  # robot frame
         self._yaw_rate_rad_s = 0.0
         self._turning_rad_s = 0.0  # mean since the last frame
         self._last_us = 0
@@ -214,7 +216,7 @@ class Localization(Component):
         if not len(seen_m) or age_s <= 0.0 or self._last is None:
             return SeenPoints(seen_m[:, 0], seen_m[:, 1])
         moved, turn_rad = (0.0, 0.0), age_s * self._turning_rad_s
-        way_m = rotation(turn_rad / 2) @ (age_s * self._last.vx_m_s, age_s * self._last.vy_m_s)
+        way_m = rotation(turn_rad / 2) @ (age_s * self._velocity_m_s[0], age_s * self._velocity_m_s[1])
         if age_s > _SHORT_S:
             way = self._recent.since(points.capture_us)
             if way is None:
@@ -233,9 +235,12 @@ class Localization(Component):
         now = self.odometry.value
         sound = plausible(now.x_m, now.y_m, now.heading_rad, now.vx_m_s, now.vy_m_s)
         if not (self.odometry.refreshed and sound):
+            if self.clock.since_s(self._last_us) > _ODOMETRY_S:
+                self._velocity_m_s, self._turning_rad_s = (0.0, 0.0), 0.0
             return Motion(0.0, 0.0, 0.0, 0.0)
         before, passed_s = self._last or now, self.clock.since_s(self._last_us)
         self._last, self._last_us = now, self.clock.now_us
+        self._velocity_m_s = now.vx_m_s, now.vy_m_s
         turn_rad = wrap_rad(now.heading_rad - before.heading_rad)
         self._turning_rad_s = now.omega_rad_s if plausible(now.omega_rad_s) else 0.0
         way_m = rotation(-before.heading_rad - turn_rad / 2) @ (now.x_m - before.x_m, now.y_m - before.y_m)

@@ -187,6 +187,15 @@ def test_odometry_that_restarts_after_a_gap_moves_no_robot() -> None:
         assert np.hypot(*robot.error(bench)[:2]) < 0.1
 
 
+def test_velocity_counts_only_while_odometry_arrives() -> None:
+    """At 2 m/s, points of a camera with 40 ms latency would be moved by 8 cm for ever."""
+    robot = FakeRobot(seed=6)
+    robot.pose, robot.latency_s = np.array((-6.0, 2.0, 0.0)), 0.04
+    bench = Bench(Localization, start_x_m=-6.0, start_y_m=2.0, start_heading_rad=0.0)
+    stop_and_lose_odometry(bench, robot, 40)
+    assert np.hypot(*robot.error(bench)[:2]) < 0.04
+
+
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e300, -1e300])
 def test_impossible_values_are_ignored(value: float) -> None:
     robot = FakeRobot(seed=23)
