@@ -1,5 +1,7 @@
 """Driver of the wheels: converts velocities into rim speeds, and measured speeds into odometry."""
 
+from collections.abc import Iterable
+from itertools import groupby
 from typing import Annotated
 
 from pydantic import Field as Setting
@@ -77,7 +79,7 @@ class Base(Component):
 
     def init(self) -> None:
         self._odometry = Odometry()
-        self._measured_us = 0
+        self._measured_us: int | None = None  # time of the newest measurement
         self._wheels = WheelReader("wheel_state", "ignored", self.log.error)
         self._silence = Silence(
             "no speeds of the wheels for {silent_s:.2f} s: the robot counts as standing", self.log.warning
@@ -91,8 +93,8 @@ class Base(Component):
 
     def loop(self) -> None:
         # Both stages take measurements: one that arrives between the stages must not be missing in the sum.
-        for state in self.wheel_state.fresh:
-            self._add(state)
+        for measured_us, states in groupby(self.wheel_state.fresh, lambda state: state.header.time_us):
+            self._add(measured_us, states)
         self._silence.go_on(self.clock)
         if self.clock.stage == "act_exec":
             self._drive()
@@ -118,22 +120,37 @@ class Base(Component):
         )
         self._ramp.velocity = velocity
 
-    def _add(self, state: wheel_state_t) -> None:
-        """Adds a measurement of the wheels to the odometry, unless it is impossible."""
-        wheels_m_s = self._wheels.read(state.measured_m_s, state.header.writer)
-        if wheels_m_s is None:
-            return
-        if not all(abs(speed) <= _PLAUSIBLE * self.config.robot.wheel_limit_m_s for speed in wheels_m_s):
-            self.log.warning(f"wheel speeds {', '.join(map(str, wheels_m_s))} m/s are impossible; ignored")
+    def _add(self, measured_us: int, states: Iterable[wheel_state_t]) -> None:
+        """Adds the possible ones of the measurements of one tick to the odometry.
+
+        Wheels that are measured several times in a tick turned with the mean speed.
+        """
+        possible = []
+        for state in states:
+            wheels_m_s = self._possible(state)
+            if wheels_m_s is not None:
+                possible.append(wheels_m_s)
+                self.odometry.value.capture_us = state.capture_us or measured_us
+        if not possible:
             return
         self._silence.end(self.clock)
-        passed_s = (state.header.time_us - self._measured_us) / US_PER_S
-        self._measured_us = state.header.time_us
-        self.odometry.value.capture_us = state.capture_us or state.header.time_us
-        if not 0 < passed_s <= _LONGEST_GAP_S:
+        passed_s = -1.0 if self._measured_us is None else (measured_us - self._measured_us) / US_PER_S
+        self._measured_us = measured_us
+        if not 0 <= passed_s <= _LONGEST_GAP_S:
             passed_s = self.clock.period_s
-        self._odometry.advance(velocity_of(wheels_m_s, self.config.robot.wheel_distance_m), passed_s)
-        self.odometry.value.velocity_covariance = self._covariance(wheels_m_s)
+        first, second, third = (sum(speeds) / len(possible) for speeds in zip(*possible, strict=True))
+        self._odometry.advance(velocity_of((first, second, third), self.config.robot.wheel_distance_m), passed_s)
+        self.odometry.value.velocity_covariance = self._covariance((first, second, third))
+
+    def _possible(self, state: wheel_state_t) -> Wheels | None:
+        """Returns the measured speeds; None if they are impossible."""
+        wheels_m_s = self._wheels.read(state.measured_m_s, state.header.writer)
+        if wheels_m_s is None:
+            return None
+        if not all(abs(speed) <= _PLAUSIBLE * self.config.robot.wheel_limit_m_s for speed in wheels_m_s):
+            self.log.warning(f"wheel speeds {', '.join(map(str, wheels_m_s))} m/s are impossible; ignored")
+            return None
+        return wheels_m_s
 
     def _covariance(self, wheels_m_s: Wheels) -> list[list[float]]:
         """Returns the covariance (3, 3) of the velocity, from the errors of wheels that were measured for one tick."""

@@ -120,6 +120,23 @@ def test_late_measurement_counts_in_full() -> None:
     assert base.port("odometry").sent[-1].x_m == pytest.approx(0.1)
 
 
+@pytest.mark.parametrize("stages", [("sensor_acquire",), ("act_exec", "sensor_acquire")])
+def test_wheels_measured_often_in_a_tick_drive_no_further(stages: tuple[str, ...]) -> None:
+    base = bench()
+    for _ in range(10):
+        for stage in stages:
+            for speed_m_s in (0.5, 1.0, 1.5):
+                state = wheel_state_t()
+                state.header.time_us = base.time_us + 50_000
+                state.measured_m_s = list(wheels_of(Velocity(speed_m_s, 0.0, 0.0), 0.2))
+                base.port("wheel_state").put(state)
+            base.iterate(stage=stage)
+            base.time_us -= 50_000 * (stage == "act_exec")
+    odometry = base.port("odometry").sent[-1]
+    assert (odometry.x_m, odometry.path_length_m) == pytest.approx((0.5, 0.5))
+    assert odometry.vx_m_s == pytest.approx(1.0)
+
+
 def test_lost_measurement_is_bridged() -> None:
     base = bench()
     roll(base, Velocity(1.0, 0.0, 0.0), 1)
