@@ -21,7 +21,8 @@ class StereoObsConfig(Config):
     """Settings of the detector."""
 
     rig: StereoRig = StereoRig()
-    """Calibration of the pair; frames with a focal length above 400 px are scaled down before the search."""
+    """Calibration of the pair; frames of another aspect are cropped to their central part, and frames with a
+    focal length above 400 px scaled down before the search."""
     robot: RobotModel = ROBOT
     """Geometry of the other robots."""
     ball: BallModel = BALL
@@ -85,7 +86,7 @@ class StereoObs(Component):
         pixels = self.stereo_image.pixels
         percepts = self.stereo_obstacles.value = obstacle_percepts_t()
         percepts.capture_us = captured_us(self.stereo_image, self.config.latency_s)
-        for found in [] if pixels is None else self._finder.find(pixels):
+        for found in [] if pixels is None else self._finder.find(self.config.rig.cropped(pixels)):
             obstacle = obstacle_t()
             obstacle.x_m, obstacle.y_m = float(found.x_m), float(found.y_m)
             obstacle.radius_m = self.config.robot.radius_m

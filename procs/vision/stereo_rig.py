@@ -7,7 +7,7 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from fwk import Config
 from procs.model.algebra import Floats
-from procs.vision.framing import scaled
+from procs.vision.framing import central_part, scaled
 
 Grey = NDArray[np.uint8]
 """Height x width."""
@@ -71,15 +71,35 @@ class StereoRig(Config):
         real_px = self.focal_px * width_px / self.width_px
         return self.model_copy(update={"width_px": width_px, "height_px": height_px, "focal_px": real_px})
 
+    def cropped(self, pixels: Grey) -> Grey:
+        """Returns both frames side by side, grey, each cropped to its central part with the aspect of this calibration.
+
+        Raises:
+            ValueError: the frames are neither grey nor have three colours.
+        """
+        grey = _grey(pixels)
+        half_px = max(1, grey.shape[1] // 2)
+        frames = (grey[:, :half_px], grey[:, -half_px:])
+        left, right = (central_part(frame, self.width_px / self.height_px) for frame in frames)
+        return grey if left.shape == frames[0].shape else np.hstack((left, right))
+
     def halves(self, pixels: Grey) -> tuple[Grey, Grey]:
         """Returns the frames of the left and the right camera from both side by side, in any size, grey or coloured.
 
         Raises:
             ValueError: the frames are neither grey nor have three colours.
         """
-        if pixels.ndim == 3 and pixels.shape[2] != 3:
-            shape = " x ".join(map(str, pixels.shape))
-            raise ValueError(f"the frame is {shape}; the pair needs grey or three colours")
-        grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY) if pixels.ndim == 3 else pixels
-        pair = scaled(np.asarray(grey, np.uint8), 2 * self.width_px, self.height_px)
+        pair = scaled(_grey(pixels), 2 * self.width_px, self.height_px)
         return pair[:, : self.width_px], pair[:, self.width_px :]
+
+
+def _grey(pixels: Grey) -> Grey:
+    """Returns the picture, grey or coloured, in grey.
+
+    Raises:
+        ValueError: it is neither grey nor has three colours.
+    """
+    if pixels.ndim == 3 and pixels.shape[2] != 3:
+        shape = " x ".join(map(str, pixels.shape))
+        raise ValueError(f"the frame is {shape}; the pair needs grey or three colours")
+    return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY) if pixels.ndim == 3 else pixels, np.uint8)

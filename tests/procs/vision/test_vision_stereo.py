@@ -266,6 +266,18 @@ def test_picture_of_another_size_is_scaled() -> None:
     assert (found.x_m, found.y_m) == pytest.approx((2.0, 0.0), abs=0.15)
 
 
+@pytest.mark.parametrize(("height_m", "count"), [(0.23, 0), (0.8, 1)])
+@pytest.mark.parametrize("rig", [{}, {"height_px": 300}, {"width_px": 640, "height_px": 480, "focal_px": 480}])
+def test_pair_of_another_shape_tells_heights(rig: dict[str, Any], height_m: float, count: int) -> None:
+    """A 4:3 camera shows more above and below; what is lower than a ball still is no obstacle."""
+    renderer = StereoRenderer(StereoRig(**rig), Field(), Bodies(robot_height_m=height_m))
+    robot_m = OWN.x_m + 2.0 * math.cos(OWN.heading_rad), OWN.y_m + 2.0 * math.sin(OWN.heading_rad)
+    bench = Bench(StereoObs)
+    bench.show("stereo_image", renderer.render(OWN, [robot_m]))
+    bench.iterate()
+    assert len(bench.port("stereo_obstacles").sent[-1].obstacles) == count
+
+
 class PlainPair(Component):
     """Does not know when its frames were exposed."""
 
