@@ -35,7 +35,7 @@ class Recorded(Protocol):
 
 
 class Folder:
-    """Picture files of a folder in natural order of their names: 2 before 10."""
+    """Picture files of a folder, apart from hidden ones, in natural order of their names: 2 before 10."""
 
     def __init__(self, path: Path) -> None:
         """Lists the pictures.
@@ -43,7 +43,7 @@ class Folder:
         Raises:
             SourceError: the folder contains no pictures.
         """
-        files = [file for file in path.iterdir() if file.suffix.lower() in PICTURES]
+        files = [file for file in path.iterdir() if _is_picture(file)]
         self._files = sorted(files, key=lambda file: _natural(file.name))
         if not files:
             raise SourceError(f"'{path}': no pictures in this folder; they end in {', '.join(PICTURES)}")
@@ -131,6 +131,11 @@ class Endless:
         self._pictures.close()
 
 
+def _is_picture(file: Path) -> bool:
+    """Returns whether a file seems to be a picture; hidden files beside pictures hold other data of theirs."""
+    return file.suffix.lower() in PICTURES and not file.name.startswith(".") and file.is_file()
+
+
 def _natural(name: str) -> list[tuple[int, str]]:
     """Returns a sort key that compares the numbers in names as numbers."""
-    return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", name)]
+    return [(int(part), "") if part.isdecimal() else (-1, part) for part in re.split(r"(\d+)", name)]

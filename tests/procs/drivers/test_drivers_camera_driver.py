@@ -154,6 +154,14 @@ def test_damaged_picture_is_named(tmp_path: Path) -> None:
         camera.iterate()
 
 
+def test_folder_may_hold_more_than_pictures(tmp_path: Path) -> None:
+    folder = write_folder(tmp_path / "film", shades(3))
+    (folder / "frame1.png").rename(folder / "²1.png")
+    (folder / "._frame0.png").write_text("notes of a file system")
+    (folder / "frame00.png").mkdir()
+    assert shades_of(bench(folder), 4) == [0, 2, 1, None]
+
+
 @pytest.fixture
 def streams() -> Iterator[Callable[..., Stream]]:
     """Creates network cameras."""
