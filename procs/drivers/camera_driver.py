@@ -145,4 +145,4 @@ class CameraDriver(Component):
 
 
 def _is_device(source: str) -> bool:
-    return source.isdecimal() or source.startswith("/dev/")
+    return source.isdecimal() or source.startswith("/dev/") or Path(source).is_char_device()

@@ -231,3 +231,9 @@ def test_live_source_warns_that_a_replay_cannot_read_it(source: str | int, reaso
     said = CameraDriver.unrepeatable(CameraDriverConfig.model_validate({"source": source}))
     assert reason in said
     assert bool(said) == bool(reason)
+
+
+def test_link_to_a_device_is_a_device(tmp_path: Path) -> None:
+    link = tmp_path / "camera"
+    link.symlink_to("/dev/zero")
+    assert "is a device" in CameraDriver.unrepeatable(CameraDriverConfig(source=str(link)))
