@@ -30,6 +30,7 @@ _START_DEVIATIONS = (0.3, 0.3, 0.1)  # m, m, rad: of a start that the settings s
 _COMPASS_ERRORS_RAD = (0.0, -0.12, 0.12, -0.24, 0.24)  # errors of the compass that a search tries in turn
 _COMPASS_MEMORY_S = 25.0  # time constant of the compass offset: so slow that a carried robot learns little wrong
 _COMPASS_FORGETS_S = 5.0  # time constant with which the offset fades while the robot searches
+_CONTRADICTIONS = 2  # frames in a row in which the compass contradicts a pose that fits: one wrong reading is no proof
 _SCORE_MEMORY_S = 0.5  # time constant of the mean score
 
 
@@ -89,6 +90,7 @@ class SelfLocalizer:
         self.compass_offset_rad = 0.0
         """Compass reading minus heading, learnt while localized."""
         self._rivals = 0  # searches in a row with a better place
+        self._contradictions = 0  # frames in a row in which the compass contradicts the pose
         self._seeks = 0  # frames in which the lost robot has searched
         self._since_frame_s = 0.0
         self._since_search_s = 0.0
@@ -156,13 +158,14 @@ class SelfLocalizer:
         if found.scores[0] > settings.lost_score:
             self._filter.correct(found.poses[0], self._match_covariance(found, shared), interval_s)
         heading_rad = float(self.pose[2])
-        contradicted = False
         if compass_rad is not None:
             deviation_rad = wrap_rad(compass_rad - self.compass_offset_rad - heading_rad)
             self.compass_offset_rad += _share(interval_s, _COMPASS_MEMORY_S) * deviation_rad
             contradicted = abs(deviation_rad) > settings.compass_limit_rad
+            counts = 1 if found.scores[0] >= settings.good_score else _CONTRADICTIONS
+            self._contradictions = self._contradictions + counts if contradicted else 0
             heading_rad = compass_rad - self.compass_offset_rad
-        if contradicted or self.score < settings.lost_score:
+        if self._contradictions >= _CONTRADICTIONS or self.score < settings.lost_score:
             self._lose()
         elif self._since_search_s >= settings.search_period_s:
             self._since_search_s = 0.0
@@ -211,7 +214,7 @@ class SelfLocalizer:
         self._filter = PoseFilter(pose, deviations)
         self.localized = True
         self.score = score
-        self._rivals = 0
+        self._rivals = self._contradictions = 0
         self._since_search_s = 0.0
         self._hypotheses.clear()
 

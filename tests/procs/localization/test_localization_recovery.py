@@ -83,6 +83,19 @@ def test_compass_that_contradicts_the_pose_starts_a_search() -> None:
     assert until_localized(bench, robot, 5.0) < math.inf, "it began as the mirror image of the true pose"
 
 
+@pytest.mark.parametrize("wrong_rad", [1.0, math.pi])
+def test_one_wrong_reading_of_the_compass_loses_no_pose(wrong_rad: float) -> None:
+    robot = FakeRobot(seed=3)
+    robot.place()
+    bench = Bench(Localization)
+    assert until_localized(bench, robot, 5.0) < math.inf
+    for error_rad in (wrong_rad, -wrong_rad):
+        robot.drift_rad += error_rad
+        assert all(frames(bench, robot, 1))
+        robot.drift_rad -= error_rad
+        assert all(frames(bench, robot, 10))
+
+
 def turning(bench: Bench, robot: FakeRobot, compass_every: int, ticks: int) -> bool:
     """Turns a robot with frames in even ticks and headings in odd ones; returns whether it knows its place at last."""
     for tick in range(ticks):
