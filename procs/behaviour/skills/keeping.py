@@ -17,6 +17,7 @@ _OFF_POST_M = 0.15  # a keeper on its line stays so far inside the posts
 _COVERED, _LEAN = 0.75, 0.08  # shares: of its reach while no shot comes, and of the ball's offset that it moves aside
 _LEAST_DEPTH_M = 0.3  # a ball nearer to the goal line counts as so far before it
 _TURNED_RAD = 1.3  # the keeper's heading differs from straight ahead by no more
+_BEHIND_RAD = 2.2  # a ball further off straight ahead is behind the keeper, on either side
 _WIDE_M = 0.6  # a shot that passes the post further away is let go
 _WIDE_S = 2.0  # a ball that crosses the goal line so soon, beside the goal, is let go
 _COMES_OUT_M = 8.0  # a ball nearer to the goal draws the keeper out ...
@@ -68,6 +69,8 @@ class KeepLine(StateMachine):
 
     def _stand(self, scene: Scene, place: Point) -> Step:
         heading_rad = bearing_rad(place, scene.view.ball.place) if scene.view.ball.known else 0.0
+        if abs(heading_rad) > _BEHIND_RAD:  # the side of such a ball changes with its noise
+            heading_rad = math.copysign(_TURNED_RAD, scene.view.own.heading_rad)
         return Step(
             Drive(place, clamp(heading_rad, -_TURNED_RAD, _TURNED_RAD), scene.speed_m_s), dribble=scene.holds_ball
         )

@@ -307,6 +307,14 @@ def test_keeper_comes_out_further_the_nearer_the_ball_is() -> None:
     assert out_m(-8.5, -10.55) == pytest.approx(0.45), "no further than it is told"
 
 
+@pytest.mark.parametrize("own_rad", [1.0, -1.0])
+def test_keeper_before_a_ball_behind_it_keeps_its_side(own_rad: float) -> None:
+    """The noise of the ball once turned it to and fro."""
+    seen = [view(robot("cyan1", -9.0, 0.0, own_rad), ball(-10.8, y_m)) for y_m in (0.04, -0.04)]
+    headings_rad = [drive(KeepGoal().step(scene(each, -8.7))).heading_rad for each in seen]
+    assert headings_rad == pytest.approx([math.copysign(1.3, own_rad)] * 2)
+
+
 def test_keeper_covers_the_ball_side_between_the_posts() -> None:
     keeper = robot("cyan1", -10.5, 0.0)
     left, right = (drive(KeepGoal().step(scene(view(keeper, ball(-9.0, y_m))))).place.y_m for y_m in (5.0, -5.0))
