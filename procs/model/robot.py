@@ -1,9 +1,9 @@
 """The robot of the middle size league: its geometry, and the players of a match by team and number."""
 
 import math
-import re
 from collections.abc import Mapping
-from functools import cache
+from functools import lru_cache
+from string import digits
 from typing import Annotated, Literal, Protocol
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -21,7 +21,8 @@ FASTEST_M_S, FASTEST_RAD_S = 8.0, 15.0
 NUMBER_MAX = 2**31 - 1
 """Largest number of a robot; a greater one does not fit into messages."""
 
-_NAME = re.compile(r"(.*?)(\d*)")
+_DIGITS_MAX = len(str(NUMBER_MAX))
+_NAMES_MAX = 4096  # of which team and number are remembered: the radio may bring any number of names
 
 
 class RobotModel(BaseModel):
@@ -93,18 +94,17 @@ ABSENT = "absent"
 """Role of a robot that is off the field, or on its way there."""
 
 
-@cache
+@lru_cache(maxsize=_NAMES_MAX)
 def team_of(robot: str) -> str:
     """Returns the letters before the number: `cyan3` gives `cyan`."""
-    found = _NAME.fullmatch(robot)
-    return found[1] if found else robot
+    return robot.rstrip(digits)
 
 
-@cache
+@lru_cache(maxsize=_NAMES_MAX)
 def number_of(robot: str) -> int:
     """Returns the number at the end of the name; 0 for a name without a number, or with one above `NUMBER_MAX`."""
-    found = _NAME.fullmatch(robot)
-    number = int(found[2]) if found and found[2] else 0
+    found = robot[len(team_of(robot)) :].lstrip("0")
+    number = int(found) if 0 < len(found) <= _DIGITS_MAX else 0
     return number if number <= NUMBER_MAX else 0
 
 
