@@ -7,6 +7,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from string import digits
 from typing import Any
 
 from pydantic import ValidationError
@@ -24,7 +25,7 @@ from procs.simulation.simulator import SimulatorConfig
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 _TURN_RAD = 2 * math.pi
-_LARGE_NUMBER = re.compile(r".*?0*[1-9]\d{9,}")
+_DIGITS_MAX = 9
 
 
 def robot_mistakes(named: Mapping[str, Sequence[str]], places: Mapping[str, Any]) -> Iterator[str]:
@@ -38,7 +39,7 @@ def robot_mistakes(named: Mapping[str, Sequence[str]], places: Mapping[str, Any]
         path = paths[name]
         if not _NAME.fullmatch(name):
             yield f"{path}: '{name}' is not a name; use letters, digits, '_' and '-', such as cyan1"
-        if _LARGE_NUMBER.fullmatch(name):
+        if _has_large_number(name):
             yield f"{path}: '{name}' has a number that is too large; use one of nine digits at most, such as cyan1"
         if times > 1:
             yield f"{path}: '{name}' is named {times} times"
@@ -54,8 +55,13 @@ def team_mistakes(named: Mapping[str, Sequence[str]], settings: Mapping[str, Map
     """
     stated = [players for values in settings.values() if isinstance(players := values.get("players"), Mapping)]
     for path, name in _paths(named):
-        if not (_LARGE_NUMBER.fullmatch(name) or player_of(name, PLAYERS) or any(name in each for each in stated)):
+        if not (_has_large_number(name) or player_of(name, PLAYERS) or any(name in each for each in stated)):
             yield f"{path}: '{name}' plays for no team; names such as cyan1 and magenta2 tell it, or settings 'players'"
+
+
+def _has_large_number(name: str) -> bool:
+    """Returns whether the number at the end of a name has more digits than numbers of robots may have."""
+    return len(name[len(name.rstrip(digits)) :].lstrip("0")) > _DIGITS_MAX
 
 
 def _paths(named: Mapping[str, Sequence[str]]) -> Iterator[tuple[str, str]]:

@@ -325,3 +325,10 @@ def test_type_mistake_in_a_condition_is_named(tmp_path: Path, text: str, message
 def test_condition_that_cannot_be_judged_is_a_mistake(tmp_path: Path, text: str) -> None:
     with pytest.raises(ScenarioError, match=r"mine.yaml:2: '.*': "):
         read(written(tmp_path, f"dummies: [cyan2]\nalways: ['{text}']\n"))
+
+
+@pytest.mark.timeout(20)
+def test_long_name_is_refused_at_once(tmp_path: Path) -> None:
+    """A match waits while its crew reads a file."""
+    with pytest.raises(ScenarioError, match=r"mine.yaml:1: robots.0: 'a1{20}.*' is not a name"):
+        read(written(tmp_path, f"robots: [a{'1' * 90_000}ö]\nat_end: [ball_speed < 1]\n"))
