@@ -6,19 +6,10 @@ import socket
 
 from fwk import Clock, Logger
 from procs.refbox.inbox import Inbox
+from procs.refbox.liveness import notice_absence
 from procs.refbox.lookup import Lookup
 from procs.refbox.protocol import ProtocolError
 
-_GONE_S = 20
-"""A RefBox whose machine does not answer for so long is gone; by itself the system would send on for 15 minutes."""
-_PROBES = 4
-_LIVENESS = (
-    (socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1),
-    (socket.IPPROTO_TCP, socket.TCP_KEEPIDLE, _GONE_S // _PROBES),
-    (socket.IPPROTO_TCP, socket.TCP_KEEPINTVL, _GONE_S // _PROBES),
-    (socket.IPPROTO_TCP, socket.TCP_KEEPCNT, _PROBES - 1),
-    (socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, 1000 * _GONE_S),
-)
 _UNDER_WAY = frozenset({errno.EINPROGRESS, errno.EALREADY, errno.EWOULDBLOCK, errno.EINTR})
 
 
@@ -115,8 +106,7 @@ class Connection:
             except OSError as error:  # this machine does not know IPv6, or the process has no descriptor left
                 return errno.EHOSTUNREACH, str(error.strerror)
             self._dialling.setblocking(False)
-            for level, option, value in _LIVENESS:
-                self._dialling.setsockopt(level, option, value)
+            notice_absence(self._dialling)
             self._dialled_us = self._clock.now_us
         code = self._dialling.connect_ex(found.address)
         return code, os.strerror(code)

@@ -9,6 +9,7 @@ from pydantic import Field
 from fwk import Component, Config, Logger, Reads, channel
 from lcmtypes.soccer import game_event_t, game_state_t, match_history_t
 from procs.model.robot import PLAYERS, Players
+from procs.refbox.liveness import notice_absence
 from procs.refbox.news import news
 from procs.refbox.protocol import PORT, Addresses, Command, Host, encode
 from procs.refbox.station import Station
@@ -122,6 +123,7 @@ class RefBoxServer(Component):
                 connection.close()
                 continue
             connection.setblocking(False)
+            notice_absence(connection)
             station = Station(connection, f"{address[0]}:{address[1]}", self.log)
             self.log.info(f"base station {station.name} is connected")
             newcomers.append(station)

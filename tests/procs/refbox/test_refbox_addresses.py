@@ -1,4 +1,4 @@
-"""Addresses of a RefBox at which nothing answers, or to which this machine cannot connect."""
+"""Peers that do not answer, or vanish, and addresses to which this machine cannot connect."""
 
 import errno
 import os
@@ -9,6 +9,8 @@ import pytest
 
 from fwk.testing import Bench
 from procs.refbox.client import RefBoxClient
+from procs.refbox.server import RefBoxServer
+from tests.procs.refbox.base_station import BaseStation
 
 
 def test_each_address_of_a_name_is_tried(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -65,8 +67,25 @@ def test_machine_that_is_switched_off_is_noticed_in_20_s(monkeypatch: pytest.Mon
         bench = Bench(RefBoxClient, "world/refbox", port=listening.getsockname()[1])
         monkeypatch.setattr(socket, "socket", Recorded)
         bench.iterate()
-        asked, tcp = made[0].getsockopt, socket.IPPROTO_TCP
-        assert asked(socket.SOL_SOCKET, socket.SO_KEEPALIVE)
-        idle_s = asked(tcp, socket.TCP_KEEPIDLE) + asked(tcp, socket.TCP_KEEPINTVL) * asked(tcp, socket.TCP_KEEPCNT)
-        assert (idle_s, asked(tcp, socket.TCP_USER_TIMEOUT)) == (20, 20_000)
+        assert absence_s(made[0]) == 20.0
         bench.finalize()
+
+
+def test_base_station_that_is_switched_off_leaves_in_20_s() -> None:
+    bench = Bench(RefBoxServer, "world/refbox", port=0)
+    station = BaseStation(bench.component.port)
+    bench.port("game_state").put()
+    bench.iterate()
+    (connected,) = bench.component._stations
+    assert absence_s(connected._connection) == 20.0
+    station.close()
+    bench.finalize()
+
+
+def absence_s(connection: socket.socket) -> float:
+    """Returns the time after which a connection fails whose peer says nothing, idle or while it is sent something."""
+    asked, tcp = connection.getsockopt, socket.IPPROTO_TCP
+    assert asked(socket.SOL_SOCKET, socket.SO_KEEPALIVE)
+    idle_s = asked(tcp, socket.TCP_KEEPIDLE) + asked(tcp, socket.TCP_KEEPINTVL) * asked(tcp, socket.TCP_KEEPCNT)
+    assert asked(tcp, socket.TCP_USER_TIMEOUT) == 1000 * idle_s
+    return idle_s
