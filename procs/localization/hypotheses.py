@@ -16,6 +16,8 @@ _OLD_ENOUGH_S = 0.38  # least age for a decision
 _CLEAR_LEAD = 0.15  # least lead over the next best hypothesis, in score, for an early decision
 _PATIENT_LEAD = 0.04  # the same for a late decision
 _PATIENCE_S = 2.3  # age at which a decision counts as late
+_STEADY_LEAD = 0.008  # a smaller lead suffices if one hypothesis keeps it in all frames ...
+_STEADY_S = 3.0  # ... of this time: beside a touch line, places half a field apart differ in few points only
 
 
 @dataclass
@@ -28,6 +30,8 @@ class Hypothesis:
     frames: int = 1
     """Number of frames with a match."""
     age_s: float = 0.0
+    led_s: float = 0.0
+    """Time for which it has led steadily."""
 
 
 class Hypotheses:
@@ -66,14 +70,21 @@ class Hypotheses:
             if not any(_same(each.pose, other.pose) for other in kept):
                 kept.append(each)
         self.known = sorted(kept, key=lambda each: -each.score)[:_MOST]
+        for place, each in enumerate(self.known):
+            each.led_s = each.led_s + interval_s if place == 0 and self._lead >= _STEADY_LEAD else 0.0
 
     def decided(self, good_score: float) -> Hypothesis | None:
-        """Returns the best hypothesis if it scores `good_score`, is old enough, and leads clearly; otherwise None."""
+        """Returns the best hypothesis if it scores `good_score`, is old enough, and leads clearly or for long."""
         best = self.known[0] if self.known else None
         if best is None or best.score < good_score or best.frames < _LEAST_FRAMES or best.age_s < _OLD_ENOUGH_S:
             return None
-        lead = best.score - (self.known[1].score if len(self.known) > 1 else 0.0)
-        return best if lead > (_CLEAR_LEAD if best.age_s < _PATIENCE_S else _PATIENT_LEAD) else None
+        clear = self._lead > (_CLEAR_LEAD if best.age_s < _PATIENCE_S else _PATIENT_LEAD)
+        return best if clear or best.led_s >= _STEADY_S else None
+
+    @property
+    def _lead(self) -> float:
+        """Score by which the best hypothesis leads over the next best."""
+        return self.known[0].score - (self.known[1].score if len(self.known) > 1 else 0.0)
 
 
 def _same(one: Floats, other: Floats) -> bool:

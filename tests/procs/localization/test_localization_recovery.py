@@ -176,6 +176,29 @@ def test_decision_takes_as_long_at_any_frame_rate(interval_s: float) -> None:
 
 
 @pytest.mark.parametrize("interval_s", [0.02, 0.08])
+def test_small_lead_decides_once_it_was_kept_for_long(interval_s: float) -> None:
+    hypotheses, poses, taken_s = Hypotheses(), np.array([[5.0, 6.5, 0.3], [-6.0, 6.5, 0.3]]), 0.0
+    scores = np.array([0.99, 0.975])
+    while hypotheses.decided(0.5) is None and taken_s < 5.0:
+        hypotheses.update(poses, scores, interval_s)
+        taken_s += interval_s
+    assert 2.9 < taken_s < 3.1 + interval_s
+    assert hypotheses.known[0].pose[0] == 5.0
+
+
+def test_small_lead_that_changes_never_decides() -> None:
+    hypotheses, poses = Hypotheses(), np.array([[5.0, 6.5, 0.3], [-6.0, 6.5, 0.3]])
+    scores = np.array([0.99, 0.96])
+    hypotheses.update(poses, scores, 0.08)
+    for _ in range(10):
+        scores = scores[::-1]
+        for _ in range(25):
+            order = [0 if each.pose[0] > 0 else 1 for each in hypotheses.known]
+            hypotheses.update(poses[order], scores[order], 0.08)
+            assert hypotheses.decided(0.5) is None
+
+
+@pytest.mark.parametrize("interval_s", [0.02, 0.08])
 def test_scores_fade_in_seconds_not_in_frames(interval_s: float) -> None:
     hypotheses, pose = Hypotheses(), np.array([[1.0, 2.0, 0.3]])
     hypotheses.update(pose, np.array([1.0]), interval_s)
