@@ -1,8 +1,19 @@
 """Tree of a robot's frames: its pose in the world, and the parts mounted on it."""
 
-from pydantic import Field
+from pydantic import Field, ValidationInfo, field_validator
 
-from fwk import Component, Config, Reads, Transform, Transforms, TransformTree, Writes, channel, transform_message
+from fwk import (
+    Component,
+    Config,
+    Reads,
+    Transform,
+    TransformError,
+    Transforms,
+    TransformTree,
+    Writes,
+    channel,
+    transform_message,
+)
 from lcmtypes.core import transforms_t
 from lcmtypes.soccer import pose_t
 from procs.model.geometry import plausible
@@ -49,11 +60,34 @@ class FrameTreeConfig(Config):
     mounted: dict[str, Mounting] = Field({}, frozen=True)
     """Further frames that do not move on the robot; an entry `camera` or `kicker` replaces the usual place."""
 
+    @field_validator("mounted")
+    @classmethod
+    def _is_tree(cls, mounted: dict[str, Mounting], info: ValidationInfo) -> dict[str, Mounting]:
+        """Refuses cycles, frames with two parents, and parents that do not exist; names have been checked before."""
+        if not {"world", "base"} <= info.data.keys():
+            return mounted
+        world, base = info.data["world"], info.data["base"]
+        every = dict.fromkeys(("camera", "kicker"), Mounting(parent=base)) | mounted
+        tree = TransformTree()
+        try:
+            tree.put(world, base, 0, Transform.of((0.0, 0.0, 0.0)))
+            for name, mounting in every.items():
+                tree.put(mounting.parent, name, 0, mounting.transform, fixed=True)
+        except TransformError as error:
+            raise ValueError(str(error)) from error
+        known = {world, base, *every}
+        for name, mounting in every.items():
+            if mounting.parent not in known:
+                frames = ", ".join(sorted(known - {name}))
+                raise ValueError(f"frame '{name}' has the parent '{mounting.parent}'; there are {frames}")
+        return mounted
+
     @property
     def mountings(self) -> dict[str, Mounting]:
         """All frames that do not move on the robot."""
-        usual = {"camera": Mounting(z_m=self.mirror.height_m), "kicker": Mounting(x_m=self.robot.mouth_m)}
-        return usual | self.mounted
+        camera = Mounting(parent=self.base, z_m=self.mirror.height_m)
+        kicker = Mounting(parent=self.base, x_m=self.robot.mouth_m)
+        return {"camera": camera, "kicker": kicker} | self.mounted
 
 
 class FrameTree(Component):
@@ -66,14 +100,9 @@ class FrameTree(Component):
     transforms: Writes[transforms_t] = channel("transforms")
 
     def init(self) -> None:
-        """Refuses cycles, and frames with two parents."""
-        config, tree = self.config, TransformTree()
-        tree.put(config.world, config.base, 0, Transform.of((0.0, 0.0, 0.0)))
-        for name, mounting in config.mountings.items():
-            tree.put(mounting.parent, name, 0, mounting.transform, fixed=True)
         self._mounted = [
             transform_message(mounting.parent, name, 0, mounting.transform, fixed=True)
-            for name, mounting in config.mountings.items()
+            for name, mounting in self.config.mountings.items()
         ]
 
     def loop(self) -> None:

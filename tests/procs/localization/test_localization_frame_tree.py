@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fwk import Clock, Component, TransformError, Writes
-from fwk.testing import Bench, MemorySystem
+from fwk import Clock, Component, Writes
+from fwk.model.errors import PlanError
+from fwk.testing import Bench, MemorySystem, launch_plan
 from lcmtypes.core import transforms_t
 from lcmtypes.soccer import ball_percept_t, pose_t
 from procs.localization.frame_tree import FrameTree
@@ -71,9 +72,30 @@ def test_camera_and_kicker_are_where_the_shared_settings_say() -> None:
     assert (found["base", "camera"].z_m, found["base", "kicker"].x_m) == pytest.approx((0.6, 0.15))
 
 
-def test_frame_tree_with_wrong_frames_does_not_start() -> None:
-    with pytest.raises(TransformError, match=r"form a cycle: a in b in a"):
-        Bench(FrameTree, mounted={"b": {"parent": "a"}, "a": {"parent": "b"}})
+def test_base_may_not_be_the_world() -> None:
+    with pytest.raises(ValueError, match="frames would form a cycle: base in base"):
+        Bench(FrameTree, world="base")
+
+
+def test_renamed_base_carries_camera_and_kicker() -> None:
+    bench = Bench(FrameTree, base="chassis", mounted={"laser": {"parent": "camera"}})
+    bench.iterate()
+    assert list(edges(bench)) == [("chassis", "camera"), ("chassis", "kicker"), ("camera", "laser")]
+
+
+@pytest.mark.parametrize(
+    ("mounted", "mistake"),
+    [
+        ("{b: {parent: a}, a: {parent: b}}", "frames would form a cycle: a in b in a"),
+        ("{world: {}}", "frames would form a cycle: world in base in world"),
+        ("{base: {parent: camera}}", "frame 'base' has the parent 'world' and cannot also have 'camera'"),
+        ("{laser: {parent: bse}}", "frame 'laser' has the parent 'bse'; there are base, camera, kicker, world"),
+    ],
+)
+def test_wrong_frames_are_refused_at_launch(mounted: str, mistake: str) -> None:
+    with pytest.raises(PlanError) as raised:
+        launch_plan("frames.yaml", (f"cyan1/frame_tree.mounted={mounted}",))
+    assert mistake in str(raised.value)
 
 
 def test_transform_lookups_use_the_time_of_the_input() -> None:
