@@ -196,6 +196,24 @@ def test_velocity_counts_only_while_odometry_arrives() -> None:
     assert np.hypot(*robot.error(bench)[:2]) < 0.04
 
 
+@pytest.mark.parametrize("every", [2, 4])
+def test_pose_is_honest_with_odometry_in_some_ticks_only(every: int) -> None:
+    robot = FakeRobot(seed=5)
+    bench = Bench(Localization, start_x_m=0.0, start_y_m=0.0, start_heading_rad=0.0)
+    course = Course(robot)
+    errors, nees = [], []
+    for tick in range(200):
+        course.step()
+        robot.show(bench)
+        if tick % every:
+            bench.port("odometry").waiting.clear()
+        bench.iterate()
+        errors.append(robot.error(bench))
+        nees.append(errors[-1] @ np.linalg.solve(np.array(bench.port("pose").sent[-1].covariance), errors[-1]))
+    assert np.sqrt(np.square(errors).sum(axis=0))[:2].max() / math.sqrt(200) < 0.06
+    assert np.mean(nees) < 5.0, "3 for an honest covariance"
+
+
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e300, -1e300])
 def test_impossible_values_are_ignored(value: float) -> None:
     robot = FakeRobot(seed=23)
