@@ -5,7 +5,7 @@ import math
 import numpy as np
 from pydantic import Field
 
-from fwk import Clock, Component, Config, Reads, Writes
+from fwk import Clock, Component, Config, Logger, Reads, Writes
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
 from procs.model.covariance import is_covariance
@@ -14,6 +14,7 @@ from procs.model.robot import ROBOT, RobotModel
 from procs.model.units import US_PER_S
 
 _SAME = 0.8  # as a share of a robot's width; the middles of two robots are further apart
+_APART = 50  # so many messages of the pair in a row that are not joined are reported
 _MOST = 100  # most obstacles of a detector that count; a field has ten robots
 
 
@@ -42,9 +43,12 @@ class ObstacleFusion(Component):
     fused_obstacles: Writes[obstacle_percepts_t]
     config: ObstacleFusionConfig
     clock: Clock
+    log: Logger
 
     def init(self) -> None:
         self._published = 0  # number of the newest message of the pair whose obstacles were published
+        self._apart = 0  # messages of the pair since then that could not be joined ...
+        self._offered = 0  # ... and the number of the newest of them
 
     def loop(self) -> None:
         if not self.obstacle_percepts.refreshed:
@@ -56,12 +60,26 @@ class ObstacleFusion(Component):
         around, ahead = self.obstacle_percepts.value, self.stereo_obstacles.value
         number = self.stereo_obstacles.header.sequence
         captured_us = _captured_us(self.obstacle_percepts)
-        at_once = abs(_captured_us(self.stereo_obstacles) - captured_us) <= self.config.apart_s * US_PER_S
+        older_s = (captured_us - _captured_us(self.stereo_obstacles)) / US_PER_S
+        at_once = abs(captured_us - _captured_us(self.stereo_obstacles)) <= self.config.apart_s * US_PER_S
         together = self.stereo_obstacles.has_value and number != self._published and at_once
         if together:
-            self._published = number
+            self._published, self._apart = number, 0
+        elif self.stereo_obstacles.has_value and number not in (self._published, self._offered):
+            self._offered = number
+            self._report_apart(older_s)
         found = joined(around.obstacles, ahead.obstacles if together else [], self._same_m)
         self._publish(captured_us, found)
+
+    def _report_apart(self, older_s: float) -> None:
+        """Counts a message of the pair that is not joined; reports once that none is, with its age."""
+        self._apart += 1
+        if self._apart == _APART:
+            age = f"{abs(older_s):.3f} s {'older' if older_s > 0 else 'newer'}"
+            self.log.warning(
+                f"no obstacles of the stereo pair are joined: their exposures are {age} than those of the "
+                f"omnidirectional camera; apart_s is {self.config.apart_s:g} s"
+            )
 
     @property
     def _same_m(self) -> float:

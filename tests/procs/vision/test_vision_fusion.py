@@ -53,6 +53,23 @@ def put_obstacle(bench: Bench, port: str, x_m: float, time_us: int, capture_us: 
     bench.port(port).put(header={"time_us": time_us}, capture_us=capture_us, obstacles=[obstacle(x_m, 0.0)])
 
 
+@pytest.mark.parametrize("turns", [False, True])
+@pytest.mark.parametrize(("late_us", "reports"), [(5_000, 0), (150_000, 1)])
+def test_pair_that_is_never_joined_is_reported_once(late_us: int, reports: int, turns: bool) -> None:
+    """With `turns`, the messages of the two cameras come in different ticks."""
+    bench = Bench(ObstacleFusion)
+    for tick in range(250):
+        now_us = 1_000_000 + bench.time_us
+        if not turns or tick % 2:
+            put_obstacle(bench, "stereo_obstacles", 4.0, now_us, now_us - late_us)
+        if not turns or tick % 2 == 0:
+            put_obstacle(bench, "obstacle_percepts", 2.0, now_us, now_us)
+        bench.iterate()
+    assert len(bench.logged) == reports
+    for line in bench.logged:
+        assert "s older than those of the omnidirectional camera; apart_s is 0.06 s" in line.text
+
+
 @pytest.mark.parametrize(("around_us", "ahead_us"), [(0, 400_000), (400_000, 0), (0, 0)])
 def test_fusion_takes_0_for_the_tick_of_the_message(around_us: int, ahead_us: int) -> None:
     bench = Bench(ObstacleFusion)
