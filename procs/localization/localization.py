@@ -9,24 +9,23 @@ from pydantic import ValidationInfo, field_validator
 from fwk import Clock, Component, Config, Logger, Reads, Writes
 from lcmtypes.robot import imu_t, odometry_t
 from lcmtypes.soccer import line_points_t, pose_t
+from procs.localization.dead_reckoning import DeadReckoning
 from procs.localization.global_search import global_search
 from procs.localization.line_map import line_map
 from procs.localization.pose_filter import motion_errors
 from procs.localization.recent_motion import RecentMotion
-from procs.localization.self_localizer import LocalizerSettings, Motion, SelfLocalizer
+from procs.localization.self_localizer import LocalizerSettings, SelfLocalizer
 from procs.model.algebra import product
 from procs.model.expected_errors import EXPECTED
 from procs.model.field import Field
 from procs.model.frames import Floats, rotation
 from procs.model.geometry import plausible, wrap_rad
 from procs.model.realism import Realism
-from procs.model.robot import FASTEST_M_S, FASTEST_RAD_S
+from procs.model.robot import FASTEST_RAD_S
 from procs.vision.calibration import MirrorConfig
 
 _SHORT_S = 0.05  # up to this age of an exposure, the velocity of the last tick describes the motion well enough
 _AHEAD_S = 0.02  # clocks of cameras may be ahead by this much
-_ODOMETRY_S = 0.5  # a velocity counts for so long; then the robot counts as standing, as with silent wheels
-_RECKONED_S = 0.25  # without odometry for so long, the robot drives on as before; it could brake or be stopped
 _COMPASS_S = 0.5  # a heading of the compass counts for so long, turned on by gyro or wheels
 _USUAL = MirrorConfig().mirror()  # the mirror for which the expected errors are stated
 _AWAY_M = 2.0  # distance at which mirrors are compared
@@ -116,13 +115,7 @@ class Localization(Component):
         config = self.config
         start = (config.start_x_m, config.start_y_m, config.start_heading_rad)
         given = [value for value in start if value is not None]
-        self._last: odometry_t | None = None
-        self._velocity_m_s = (0.0, 0.0)  # robot frame
-        self._place = (0.0, 0.0, 0.0)  # odometry frame: where the motions until now have led, in m, m, rad
-        self._moved_us = 0  # time of the newest motion
-        self._yaw_rate_rad_s = 0.0
-        self._turning_rad_s = 0.0  # mean since the last frame
-        self._last_us = 0
+        self._motions = DeadReckoning(self.clock)
         self._localizer = self._new_localizer(np.array(given) if given else None)
         self._updated_us = -1
         self._recent = RecentMotion()
@@ -135,8 +128,8 @@ class Localization(Component):
         knew = self._localizer.localized
         passed_s = self.clock.period_s if self._updated_us < 0 else self.clock.since_s(self._updated_us)
         updated_us, self._updated_us = self._updated_us, self.clock.now_us
-        imu_is_sound = self._takes_compass()
-        motion = self._motion(imu_is_sound)
+        yaw_rate_rad_s = self.imu.value.yaw_rate_rad_s if self._takes_compass() else None
+        motion = self._motions.motion(self.odometry.value if self.odometry.refreshed else None, yaw_rate_rad_s)
         if 0 <= updated_us < self._updated_us:
             self._recent.add(updated_us, self._updated_us, motion)
         seen = self._as_seen_now(self.line_points.value) if self._sees_anew() else _NOTHING
@@ -214,12 +207,13 @@ class Localization(Component):
         seen_m = np.array((points.x_m, points.y_m)).T
         seen_m = seen_m[seen_m.any(axis=1)]
         age_s = self.clock.since_s(points.capture_us) if points.capture_us else 0.0
-        if self._last is None and age_s > _SHORT_S:
+        if not self._motions.has_begun and age_s > _SHORT_S:
             return _NOTHING
-        if not len(seen_m) or age_s <= 0.0 or self._last is None:
+        if not len(seen_m) or age_s <= 0.0 or not self._motions.has_begun:
             return SeenPoints(seen_m[:, 0], seen_m[:, 1])
-        moved, turn_rad = (0.0, 0.0), age_s * self._turning_rad_s
-        way_m = rotation(turn_rad / 2) @ (age_s * self._velocity_m_s[0], age_s * self._velocity_m_s[1])
+        moved, turn_rad = (0.0, 0.0), age_s * self._motions.turning_rad_s
+        vx_m_s, vy_m_s = self._motions.velocity_m_s
+        way_m = rotation(turn_rad / 2) @ (age_s * vx_m_s, age_s * vy_m_s)
         if age_s > _SHORT_S:
             way = self._recent.since(points.capture_us)
             if way is None:
@@ -229,58 +223,3 @@ class Localization(Component):
         with np.errstate(over="ignore", invalid="ignore"):  # values that cannot be are left out later
             seen_m = product(seen_m - way_m, rotation(turn_rad))
         return SeenPoints(seen_m[:, 0], seen_m[:, 1], moved)
-
-    def _motion(self, imu_is_sound: bool) -> Motion:
-        """Returns the motion since the last tick: the way by the wheels, the turn by the gyro, which does not slip.
-
-        Without a gyro, the turn is that of the wheels, too.
-        """
-        now = self.odometry.value
-        sound = plausible(now.x_m, now.y_m, now.heading_rad, now.vx_m_s, now.vy_m_s)
-        if not (self.odometry.refreshed and sound):
-            return self._reckoned(imu_is_sound)
-        last, passed_s = self._last or now, self.clock.since_s(self._last_us)
-        x_m, y_m, heading_rad = (now.x_m, now.y_m, now.heading_rad) if self._last is None else self._place
-        moved_s, self._moved_us = self.clock.since_s(self._moved_us), self.clock.now_us
-        self._last, self._last_us = now, self.clock.now_us
-        self._place = now.x_m, now.y_m, now.heading_rad
-        self._velocity_m_s = now.vx_m_s, now.vy_m_s
-        turn_rad = wrap_rad(now.heading_rad - heading_rad)
-        self._turning_rad_s = now.omega_rad_s if plausible(now.omega_rad_s) else 0.0
-        way_m = rotation(-heading_rad - turn_rad / 2) @ (now.x_m - x_m, now.y_m - y_m)
-        longest_s = max(passed_s, self.clock.period_s)
-        too_far = np.hypot(*way_m) > FASTEST_M_S * longest_s or abs(turn_rad) > FASTEST_RAD_S * longest_s
-        if too_far or now.path_length_m < last.path_length_m:
-            way_m, turn_rad = np.zeros(2), 0.0  # the driver restarted: its frame has moved, not the robot
-        if imu_is_sound:
-            rate_rad_s = self._mean_yaw_rate_rad_s()
-            if last is not now:
-                turn_rad = wrap_rad(rate_rad_s * moved_s)
-                self._turning_rad_s = rate_rad_s
-        return Motion(float(way_m[0]), float(way_m[1]), turn_rad, float(np.hypot(now.vx_m_s, now.vy_m_s)))
-
-    def _reckoned(self, imu_is_sound: bool) -> Motion:
-        """Returns the motion of a tick without odometry: for some ticks, the robot drives on over the ground as before.
-
-        What is wrong with that is made good with the next odometry.
-        """
-        silent_s = self.clock.since_s(self._last_us)
-        if silent_s > _ODOMETRY_S:
-            self._velocity_m_s, self._turning_rad_s = (0.0, 0.0), 0.0
-        if self._last is None or silent_s > _RECKONED_S:
-            return Motion(0.0, 0.0, 0.0, 0.0)
-        passed_s, self._moved_us = self.clock.since_s(self._moved_us), self.clock.now_us
-        if imu_is_sound:
-            self._turning_rad_s = self._mean_yaw_rate_rad_s()
-        turn_rad, (x_m, y_m, heading_rad) = passed_s * self._turning_rad_s, self._place
-        ahead_m, left_m = rotation(-turn_rad / 2) @ self._velocity_m_s * passed_s
-        way_x_m, way_y_m = rotation(heading_rad) @ self._velocity_m_s * passed_s
-        vx_m_s, vy_m_s = rotation(-turn_rad) @ self._velocity_m_s
-        self._velocity_m_s = float(vx_m_s), float(vy_m_s)
-        self._place = x_m + float(way_x_m), y_m + float(way_y_m), heading_rad + turn_rad
-        return Motion(float(ahead_m), float(left_m), turn_rad, float(np.hypot(vx_m_s, vy_m_s)))
-
-    def _mean_yaw_rate_rad_s(self) -> float:
-        """Returns the mean of the newest yaw rate and the one before."""
-        before_rad_s, self._yaw_rate_rad_s = self._yaw_rate_rad_s, self.imu.value.yaw_rate_rad_s
-        return (self._yaw_rate_rad_s + before_rad_s) / 2
