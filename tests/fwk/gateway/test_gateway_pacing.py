@@ -91,7 +91,7 @@ def test_a_listener_that_stays_busy_is_overrun_and_named() -> None:
     assert paced.publisher.overrun == "lcm-logger"
 
 
-def test_a_listener_that_stays_busy_takes_nothing_from_the_others() -> None:
+def test_listener_that_stays_busy_takes_nothing_from_the_others() -> None:
     paced = Paced()
     paced.tick(200)
     paced.busy = "lcm-spy"

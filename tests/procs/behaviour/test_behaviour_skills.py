@@ -93,7 +93,7 @@ def test_set_pieces_ball_is_taken_from_behind() -> None:
     assert not drive(GetBall().step(scene(behind, set_piece=True))).avoid_ball
 
 
-def test_ball_before_the_own_goal_is_touched_with_the_mouth_alone() -> None:
+def test_ball_before_the_own_goal_is_touched_with_the_mouth_only() -> None:
     for heading_rad, waits in ((0.0, True), (math.pi, False)):
         seen = view(robot("cyan1", -10.4, 0.2, heading_rad), ball(-10.8, 0.2))
         place = drive(GetBall().step(scene(seen))).place

@@ -326,7 +326,7 @@ def test_ball_that_an_opponent_dribbles_is_not_waited_for() -> None:
     assert decide(seen).skill == "get_ball"
 
 
-def test_unknown_ball_is_searched_from_the_place_in_the_formation() -> None:
+def test_unknown_ball_is_searched_from_the_place_in_formation() -> None:
     seen = view(robot("cyan2", 0.0, 0.0), Ball(known=False))
     order = decide(seen)
     assert (order.skill, order.place) == ("search", (-3.0, 1.0))

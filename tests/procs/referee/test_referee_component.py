@@ -305,7 +305,7 @@ def test_what_plays_in_neither_team_commits_no_foul() -> None:
         assert (state(bench).state == game_state_t.FREE_KICK) == whistled
 
 
-def test_command_for_a_team_means_its_highest_number_on_the_field() -> None:
+def test_command_for_a_team_means_its_highest_number_on_field() -> None:
     bench = with_names()
     for name, team, expected in (
         ("yellow_card", "magenta", []),  # dora

@@ -114,7 +114,7 @@ def test_settings_of_the_finished_world_are_fixed() -> None:
 
 
 @pytest.mark.parametrize(("period_s", "timeout_s"), [(0.05, 0.25), (0.05, 1e-9), (0.5, 0.25)])
-def test_robot_obeys_the_previous_tick_and_stops_without_commands(period_s: float, timeout_s: float) -> None:
+def test_robot_obeys_the_previous_tick_and_stops_when_silent(period_s: float, timeout_s: float) -> None:
     world = bench(period_s=period_s, command_timeout_s=timeout_s)
     assert tick(world, 20, cyan1=[0.2, 0.2, 0.2]).robots[0].omega_rad_s == pytest.approx(1.0, abs=0.05)
     assert tick(world, 20).robots[0].omega_rad_s == pytest.approx(0.0, abs=0.01)
