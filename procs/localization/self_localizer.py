@@ -31,6 +31,7 @@ _COMPASS_ERRORS_RAD = (0.0, -0.12, 0.12, -0.24, 0.24)  # errors of the compass t
 _COMPASS_MEMORY_S = 25.0  # time constant of the compass offset: so slow that a carried robot learns little wrong
 _COMPASS_FORGETS_S = 5.0  # time constant with which the offset fades while the robot searches
 _CONTRADICTIONS = 2  # frames in a row in which the compass contradicts a pose that fits: one wrong reading is no proof
+_AS_USUAL = 0.9  # share of its mean score with which a pose fits as before; a robot that was carried away fits worse
 _SCORE_MEMORY_S = 0.5  # time constant of the mean score
 
 
@@ -153,7 +154,7 @@ class SelfLocalizer:
     def _track(self, points: LinePoints, compass_rad: float | None, shared: Floats, interval_s: float) -> None:
         """Corrects the pose with the points; gives it up if points or compass contradict it."""
         settings = self._settings
-        found = match(self._lines, points, self.pose[None])
+        found, usual_score = match(self._lines, points, self.pose[None]), self.score
         self.score += _share(interval_s, _SCORE_MEMORY_S) * (float(found.scores[0]) - self.score)
         if found.scores[0] > settings.lost_score:
             self._filter.correct(found.poses[0], self._match_covariance(found, shared), interval_s)
@@ -162,7 +163,8 @@ class SelfLocalizer:
             deviation_rad = wrap_rad(compass_rad - self.compass_offset_rad - heading_rad)
             self.compass_offset_rad += _share(interval_s, _COMPASS_MEMORY_S) * deviation_rad
             contradicted = abs(deviation_rad) > settings.compass_limit_rad
-            counts = 1 if found.scores[0] >= settings.good_score else _CONTRADICTIONS
+            fits = found.scores[0] >= max(settings.good_score, _AS_USUAL * usual_score)
+            counts = 1 if fits else _CONTRADICTIONS
             self._contradictions = self._contradictions + counts if contradicted else 0
             heading_rad = compass_rad - self.compass_offset_rad
         if self._contradictions >= _CONTRADICTIONS or self.score < settings.lost_score:

@@ -96,6 +96,18 @@ def test_one_wrong_reading_of_the_compass_loses_no_pose(wrong_rad: float) -> Non
         assert all(frames(bench, robot, 10))
 
 
+def test_wrong_heading_and_a_worse_fit_show_a_carried_robot() -> None:
+    """One that was carried to lines like those of its old place fits it half."""
+    robot = FakeRobot(seed=3)
+    robot.place()
+    bench = Bench(Localization)
+    assert until_localized(bench, robot, 5.0) < math.inf
+    robot.clutter = 0.3
+    assert all(frames(bench, robot, 1))
+    robot.drift_rad += 1.5
+    assert not any(frames(bench, robot, 1))
+
+
 def turning(bench: Bench, robot: FakeRobot, compass_every: int, ticks: int) -> bool:
     """Turns a robot with frames in even ticks and headings in odd ones; returns whether it knows its place at last."""
     for tick in range(ticks):
