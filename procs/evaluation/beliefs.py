@@ -10,6 +10,7 @@ import numpy as np
 from lcmtypes.soccer import ground_truth_t, match_event_t, robot_estimate_t, true_robot_t, world_model_t
 from procs.evaluation.piece import Piece
 from procs.evaluation.poses import START_S, pose_samples
+from procs.model.covariance import is_positive
 from procs.model.frames import Floats
 
 NEAR_M = 4.0
@@ -180,13 +181,7 @@ def covers(covariance: Floats, error: Floats) -> bool:
 
 def surprise_of(covariance: Floats, error: Floats) -> float:
     """Returns the square of an error (2) by its covariance (2, 2); infinite for a matrix that covers nothing."""
-    return float(error @ np.linalg.solve(covariance, error)) if is_positive(covariance) else math.inf
-
-
-def is_positive(covariance: Floats) -> bool:
-    """Returns whether a matrix (2, 2) is positive definite: any other is no covariance, or claims an exact value."""
-    (xx_m2, xy_m2), (yx_m2, yy_m2) = covariance.tolist()
-    return bool(xx_m2 > 0.0 and 0.0 < xx_m2 * yy_m2 - xy_m2 * yx_m2 < math.inf)
+    return float(error @ np.linalg.solve(covariance, error)) if is_positive(covariance.tolist()) else math.inf
 
 
 def _kicks(piece: Piece) -> Samples:

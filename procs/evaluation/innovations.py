@@ -8,9 +8,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from procs.evaluation.beliefs import Samples, flies, is_positive, placed_ticks
+from procs.evaluation.beliefs import Samples, flies, placed_ticks
 from procs.evaluation.exposures import Frame, frames_of, pose_at
 from procs.evaluation.piece import Piece
+from procs.model.covariance import is_positive
 from procs.model.frames import Floats, to_world
 
 _GATE = 13.8  # chi-square, 2 degrees of freedom, 99.9 %: beyond it the ball was kicked, or another one was seen
@@ -55,7 +56,7 @@ def _innovations(piece: Piece) -> Iterator[tuple[Frame, Floats]]:
             np.array([percept.covariance_m2]),
         )
         spread_m2 = by_sight_m2[0] + by_pose_m2[0] + np.array(model.ball.covariance)[:2, :2]
-        if not is_positive(spread_m2):
+        if not is_positive(spread_m2.tolist()):
             continue  # nothing is claimed
         innovation = np.linalg.solve(np.linalg.cholesky(spread_m2), seen_m[0] - expected_m)
         if innovation @ innovation <= _GATE:

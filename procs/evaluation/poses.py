@@ -100,16 +100,18 @@ def _beliefs(piece: Piece, interface: str, robot: str) -> Iterator[_Belief]:
         if tick in piece.truth and tick * piece.period_s >= START_S:
             own = piece.robot(tick, robot)
             carried = before is not None and _is_carried(before, own, piece.period_s)
-            error, turned_rad = (pose.x_m - own.x_m, pose.y_m - own.y_m), pose.heading_rad - own.heading_rad
-            if not plausible(*error, turned_rad):  # no pose at all: it is wrong, and shows
-                error, turned_rad = (math.inf, math.inf), math.inf
+            error, off_rad = (pose.x_m - own.x_m, pose.y_m - own.y_m), pose.heading_rad - own.heading_rad
+            if plausible(*error, off_rad):
+                off_rad = abs(wrap_rad(off_rad))
+            else:  # no pose at all: it is wrong, and shows
+                error, off_rad = (math.inf, math.inf), math.inf
             jump_m = math.dist(error, error_before) if before is not None else 0.0
             before, error_before = own, error
             yield _Belief(
                 tick,
                 bool(pose.localized),
                 math.hypot(*error),
-                abs(wrap_rad(turned_rad)) if math.isfinite(turned_rad) else math.inf,
+                off_rad,
                 jump_m,
                 carried,
                 math.hypot(own.vx_m_s, own.vy_m_s) <= _STANDS_M_S and abs(own.omega_rad_s) <= _STANDS_RAD_S,

@@ -1,5 +1,6 @@
 """Checks the covariances that messages state: not every matrix is a covariance."""
 
+import math
 from collections.abc import Sequence
 
 from procs.model.geometry import plausible
@@ -21,6 +22,12 @@ def is_covariance(matrix: Sequence[Sequence[float]]) -> bool:
             if abs(matrix[i][j] - matrix[j][i]) > slack or abs(matrix[i][j]) > most**0.5 + slack:
                 return False
     return len(matrix) < 3 or _determinant(matrix) >= -_ROUNDING * matrix[0][0] * matrix[1][1] * matrix[2][2]
+
+
+def is_positive(matrix: Sequence[Sequence[float]]) -> bool:
+    """Returns whether a matrix (2, 2) is positive definite: any other is no covariance, or claims an exact value."""
+    (xx, xy), (yx, yy) = matrix
+    return xx > 0.0 and 0.0 < xx * yy - xy * yx < math.inf
 
 
 def _determinant(matrix: Sequence[Sequence[float]]) -> float:

@@ -7,7 +7,6 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from string import digits
 from typing import Any
 
 from pydantic import ValidationError
@@ -15,7 +14,7 @@ from pydantic import ValidationError
 from lcmtypes.soccer import place_ball_t
 from procs.model.field import Field, Point
 from procs.model.right_name import right_name
-from procs.model.robot import PLAYERS, player_of
+from procs.model.robot import PLAYERS, player_of, team_of
 from procs.referee.names import Names
 from procs.referee.orders import mistake_in
 from procs.scenarios.action import Action, field_mistakes
@@ -61,7 +60,7 @@ def team_mistakes(named: Mapping[str, Sequence[str]], settings: Mapping[str, Map
 
 def _has_large_number(name: str) -> bool:
     """Returns whether the number at the end of a name has more digits than numbers of robots may have."""
-    return len(name[len(name.rstrip(digits)) :].lstrip("0")) > _DIGITS_MAX
+    return len(name[len(team_of(name)) :].lstrip("0")) > _DIGITS_MAX
 
 
 def _paths(named: Mapping[str, Sequence[str]]) -> Iterator[tuple[str, str]]:

@@ -8,7 +8,7 @@ from pydantic import Field
 from fwk import Clock, Component, Config, Logger, Reads, Writes
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
-from procs.model.covariance import is_covariance
+from procs.model.covariance import is_covariance, is_positive
 from procs.model.nearest import nearest
 from procs.model.robot import ROBOT, RobotModel
 from procs.model.units import US_PER_S
@@ -138,6 +138,5 @@ def _mean(one: obstacle_t, other: obstacle_t) -> obstacle_t:
 
 def _covariance(obstacle: obstacle_t) -> Floats | None:
     """Returns the covariance (2, 2) in m²; None if the message states an impossible one."""
-    (xx, xy), (yx, yy) = obstacle.covariance_m2
-    invertible = is_covariance(obstacle.covariance_m2) and xx > 0 and xx * yy > xy * yx
-    return np.array(((xx, xy), (yx, yy))) if invertible else None
+    stated_m2 = obstacle.covariance_m2
+    return np.array(stated_m2) if is_covariance(stated_m2) and is_positive(stated_m2) else None

@@ -130,7 +130,7 @@ def test_penalty_is_lobbed_over_a_keeper_in_the_middle() -> None:
 
 @pytest.mark.parametrize("stopped", [True, False])
 def test_taker_of_a_penalty_faces_the_goal(stopped: bool) -> None:
-    """It once turned to a mate, took the ball from the goal's side, and shot 3 s later."""
+    """A taker that turns to a mate takes the ball from the goal's side, and shoots 3 s later."""
     spot, supporter = Point(7.4, 0.0), robot("cyan3", 4.0, 3.0, role=SUPPORTER)
     penalty, tactics = Game(State.PENALTY, stopped, Whose.OURS, spot), Tactics(FIELD)
     order = tactics.decide(

@@ -55,7 +55,7 @@ def test_socket_that_cannot_be_made_is_told_once(monkeypatch: pytest.MonkeyPatch
 
 
 def test_machine_that_is_switched_off_is_noticed_in_20_s(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It says no farewell; the system has to ask, and must not send on for a quarter of an hour."""
+    """Such a machine says no farewell; the system has to ask, and must not send on for a quarter of an hour."""
     made: list[socket.socket] = []
 
     class Recorded(socket.socket):

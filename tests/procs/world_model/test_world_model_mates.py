@@ -250,7 +250,7 @@ def test_mate_without_a_name_or_behind_the_walls_is_left_out(name: str, x_m: flo
 
 @pytest.mark.parametrize(("apart_us", "turned_rad"), [(1, 0.01), (100_000, 3.1)])
 def test_mate_whose_heading_jumps_does_not_turn(apart_us: int, turned_rad: float) -> None:
-    """It has found its place anew, or its clock has; the ball in its mouth rests."""
+    """The mate's pose or clock was corrected; the ball in its mouth rests."""
     robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
     for heading_rad, ago_us in ((0.0, apart_us), (turned_rad, 0)):
         robot.sense(None, [])
