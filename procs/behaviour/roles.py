@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from typing import NamedTuple
 
 from procs.behaviour import ballistics
@@ -35,16 +35,21 @@ class Job(NamedTuple):
 
 
 def assign(
-    view: View, field: Field, presses: bool = False, game: Game = PLAY, goal_is_kept: bool = False
+    view: View,
+    field: Field,
+    presses: bool = False,
+    game: Game = PLAY,
+    goal_is_kept: bool = False,
+    stalled: Container[str] = (),
 ) -> dict[str, Job]:
     """Jobs of the own robot, if it is localized, and of its mates, by name.
 
     The lowest number keeps the goal unless it is alone, and then at a penalty of the other team; no other does while
     that one is on the field and does not play, or if `goal_is_kept` by a mate without a radio, as field players may not
-    stay in the areas. Of the others the receiver
-    of a pass on its way attacks, else the robot that meets the ball first. A team that `presses` sends a second robot
-    in play if an opponent is at the ball sooner. The rest fill the formation, at set pieces within the rules, so that
-    they drive little. The order of the mates does not matter.
+    stay in the areas. Of the others the receiver of a pass on its way attacks, else the robot that meets the ball
+    first; `stalled` robots only if there is no other. A team that `presses` sends a second robot in play if an opponent
+    is at the ball sooner. The rest fill the formation, at set pieces within the rules, so that they drive little. The
+    order of the mates does not matter.
     """
     present = [robot for robot in (*view.mates, view.own) if robot is not view.own or view.localized]
     team = sorted((robot for robot in present if robot.role != ABSENT), key=lambda robot: robot.name)
@@ -58,14 +63,14 @@ def assign(
         return jobs
     course = ballistics.Course(view.ball, view.bodies)
     times_s = {robot.name: time_to_ball_s(robot, view.ball, course) for robot in team}
-    attacker = receiver(team, view) or _first_at_ball(team, times_s)
+    attacker = receiver(team, view) or _first_at_ball(team, times_s, stalled)
     jobs[attacker.name] = Job(ATTACKER, view.ball.place)
     team.remove(attacker)
     theirs_s = opponents_time_s(view, course)
     ours = times_s[attacker.name] <= theirs_s
     pressing_s = _STAY_PRESSING_S if any(robot.role == ATTACKER for robot in team) else 0.0
     if presses and game.free_play and len(team) > 1 and theirs_s < times_s[attacker.name] + pressing_s:
-        second = _first_at_ball(team, times_s)
+        second = _first_at_ball(team, times_s, stalled)
         jobs[second.name] = Job(ATTACKER, view.ball.place)
         team.remove(second)
     supporter = next((robot for robot in team if robot.role == SUPPORTER), None)
@@ -74,9 +79,10 @@ def assign(
     return jobs
 
 
-def _first_at_ball(team: Sequence[Robot], times_s: Mapping[str, float]) -> Robot:
+def _first_at_ball(team: Sequence[Robot], times_s: Mapping[str, float], stalled: Container[str]) -> Robot:
     """Returns the robot that meets the ball first; attackers keep their role unless another is much faster."""
     free = [robot for robot in team if robot.role != PASSER] or team
+    free = [robot for robot in free if robot.name not in stalled] or free
     return min(free, key=lambda robot: (times_s[robot.name] - _STAY_S * (robot.role == ATTACKER), robot.name))
 
 

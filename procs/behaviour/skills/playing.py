@@ -115,13 +115,15 @@ class _Kick(_WithBall):
 
     _ONLY_DIRECTION = True  # the place gives the kick its direction; else the ball arrives there
     _TIMEOUT_S = 3.0
+    _NEARLY_RAD, _SETTLES_S, _IMPATIENCE = 0.3, 0.8, 6.0
+    """A robot that is nearly aimed for longer cannot turn as it should, and takes what it has got."""
     _EXACT = 0.4  # share of the tolerance in which a robot kicks although its aim still improves
     _LEAD_S = 0.03  # from the view to the kick
     _SLOWING_RAD_S = 0.5  # by which the turn is slower then than it was on the way to the view
 
     def __init__(self) -> None:
         super().__init__()
-        self._running_s = 0.0
+        self._running_s = self._nearly_s = 0.0
         self._heading_rad, self._heading_s = math.nan, 0.0  # when it was last looked at, and for how long it is so
         self._wanted_rad = self._kick_m_s = 0.0
         self._off_rad = math.nan
@@ -156,7 +158,9 @@ class _Kick(_WithBall):
         mouth_m_s = _mouth_velocity_m_s(scene.view, slowed_rad_s)
         self._wanted_rad, self._kick_m_s = self._aim(scene, speed_m_s, mouth_m_s)
         off_rad = wrap_rad(self._wanted_rad - own.heading_rad - (turn_rad_s + slowed_rad_s) / 2 * self._LEAD_S)
-        patience = 1.0 + 0.5 * self._running_s  # a poor kick is better than none
+        self._nearly_s = self._nearly_s + scene.duration_s if abs(off_rad) < self._NEARLY_RAD else 0.0
+        late_s = max(0.0, self._nearly_s - self._SETTLES_S)
+        patience = 1.0 + 0.5 * self._running_s + self._IMPATIENCE * late_s  # a poor kick is better than none
         tolerance_rad = self._tolerance_rad(distance_m) * patience
         improves = 2 * abs(off_rad) > abs(self._off_rad - off_rad) and abs(off_rad) < abs(self._off_rad)
         self._off_rad = off_rad

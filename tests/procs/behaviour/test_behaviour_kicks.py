@@ -42,6 +42,14 @@ def test_turn_while_waiting_for_the_kicker_is_not_a_jerk(rate_hz: int) -> None:
     assert skill.step(held(0.008, duration_s, kicked=False)).kick_m_s > 0.0
 
 
+@pytest.mark.parametrize(("off_rad", "kicks"), [(0.08, True), (0.2, False)])
+def test_robot_that_cannot_turn_shoots_nearly_aimed(off_rad: float, kicks: bool) -> None:
+    skill = Shoot()
+    steps = [skill.step(held(off_rad)) for _ in range(30)]
+    assert not any(step.kick_m_s for step in steps[:16]), "it has time to turn"
+    assert any(step.kick_m_s for step in steps) == kicks
+
+
 @pytest.mark.parametrize(("length_m", "width_m"), [(22.0, 14.0), (12.0, 8.0), (32.0, 20.0)])
 def test_pressed_robot_clears_by_the_size_of_the_field(length_m: float, width_m: float) -> None:
     field = Field(length_m=length_m, width_m=width_m)

@@ -1,0 +1,66 @@
+"""Robots that should go for the ball but stand, such as held or broken ones, by what the team tells."""
+
+import math
+from dataclasses import dataclass
+
+from procs.behaviour.game import Game, Whose
+from procs.behaviour.roles import ATTACKER
+from procs.behaviour.view import Robot, View
+from procs.model.field import Field, Point
+
+_STANDS_S = 2.5  # a healthy attacker has driven off, or has kicked, by then
+_MOVED_M = 0.3  # noise of the localization moves a standing robot by less
+_AVOIDED_S = 10.0  # then the robot may have been repaired
+_RIVAL_M = 0.5  # beside the ball; robots that fight for it stand, too
+_ROLLS_M_S = 0.6  # a robot may wait for a faster ball
+_KEEPERS_M = 1.0  # around the own penalty area the attacker leaves the ball to the goalkeeper
+
+
+@dataclass
+class _Stand:
+    place: Point
+    """Place of the robot when the time began."""
+    time_s: float = 0.0
+    """Time for which the robot should have driven, and stood."""
+    avoided_s: float = 0.0
+    """Time for which the team still does without the robot."""
+
+
+class Stalls:
+    """Tells a robot which robots of its team, itself among them, stand though they should go for the ball.
+
+    All robots of a team hear the same messages, so that they find the same ones within the delay of a message.
+    """
+
+    def __init__(self) -> None:
+        self._stands: dict[str, _Stand] = {}
+
+    def watch(self, view: View, game: Game, field: Field, duration_s: float) -> frozenset[str]:
+        """Returns the names of the stalled robots; call it once a tick, `duration_s` after the last.
+
+        A robot stays stalled until it moves, for 10 s at most.
+        """
+        obliged, team = _ball_waits(view, game, field), (view.own, *view.mates)
+        self._stands = {robot.name: self._standing(robot) for robot in team}
+        for robot, stand in zip(team, self._stands.values(), strict=True):
+            stand.avoided_s -= duration_s
+            attacks = obliged and robot.role == ATTACKER and not robot.agreement.passer
+            stand.time_s = stand.time_s + duration_s if attacks else 0.0
+            if stand.time_s > _STANDS_S:
+                stand.avoided_s = _AVOIDED_S
+        return frozenset(name for name, stand in self._stands.items() if stand.avoided_s > 0.0)
+
+    def _standing(self, robot: Robot) -> _Stand:
+        """Returns what is known of a robot at its place; nothing, once it has moved."""
+        stand = self._stands.get(robot.name)
+        if stand is None or math.dist(stand.place, robot.place) > _MOVED_M:
+            return _Stand(robot.place)
+        return stand
+
+
+def _ball_waits(view: View, game: Game, field: Field) -> bool:
+    """Returns whether the ball lies where nothing but the attacker's own drive brings it to the attacker."""
+    ball = view.ball
+    allowed = game.free_play or (game.whose is Whose.OURS and not game.stopped)
+    lies = ball.known and ball.speed_m_s < _ROLLS_M_S and not view.is_at_ball(view.opponents, _RIVAL_M)
+    return allowed and lies and not field.in_penalty_area(*ball.place, -1.0, _KEEPERS_M)
