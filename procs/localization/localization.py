@@ -12,6 +12,7 @@ from lcmtypes.soccer import line_points_t, pose_t
 from procs.localization.dead_reckoning import DeadReckoning
 from procs.localization.global_search import global_search
 from procs.localization.line_map import line_map
+from procs.localization.lost_report import LostReport
 from procs.localization.pose_filter import motion_errors
 from procs.localization.recent_motion import RecentMotion
 from procs.localization.self_localizer import LocalizerSettings, SelfLocalizer
@@ -119,6 +120,7 @@ class Localization(Component):
         self._localizer = self._new_localizer(np.array(given) if given else None)
         self._updated_us = -1
         self._recent = RecentMotion()
+        self._lost = LostReport()
         self._captured_us = 0  # newest exposure of points
         self._compass_rad, self._compass_us = 0.0, -1  # newest heading of the compass, and the tick in which it came
 
@@ -134,15 +136,27 @@ class Localization(Component):
             self._recent.add(updated_us, self._updated_us, motion)
         seen = self._as_seen_now(self.line_points.value) if self._sees_anew() else _NOTHING
         compass_rad = self._compass_now_rad() if len(seen.x_m) else None
+        searches = self._localizer.searches
         self._localizer.update(motion, compass_rad, seen.x_m, seen.y_m, passed_s, seen.moved)
         if knew != self._localizer.localized:
             here_m = "({:.2f}, {:.2f})".format(*self._localizer.pose[:2])
             self.log.info(f"localized at {here_m} m" if not knew else "lost, searching the whole field")
+        self._report(passed_s, len(seen.x_m), compass_rad is not None, self._localizer.searches > searches)
         pose = self.pose.value
         pose.x_m, pose.y_m, pose.heading_rad = self._localizer.pose.tolist()
         pose.covariance = self._localizer.covariance.tolist()
         pose.localized = self._localizer.localized
         self.pose.write()
+
+    def _report(self, passed_s: float, points: int, has_heading: bool, searched: bool) -> None:
+        """Says from time to time why the robot does not find its place."""
+        if self._localizer.localized:
+            self._lost.clear()
+            return
+        message = self.line_points
+        ahead_s = -self.clock.since_s(message.value.capture_us) if message.refreshed else None
+        if self._lost.count(passed_s, ahead_s, points, has_heading, searched):
+            self.log.warning(self._lost.text(self._localizer.places, self._settings()))
 
     def _new_localizer(self, start: Floats | None) -> SelfLocalizer:
         return SelfLocalizer(line_map(self.config.field), self._settings(), start)

@@ -11,12 +11,13 @@ averaged into the heading. Without a compass a lost robot stays lost, because th
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from procs.localization.global_search import global_search
-from procs.localization.hypotheses import Hypotheses
+from procs.localization.hypotheses import Hypotheses, Hypothesis
 from procs.localization.line_map import LineMap
 from procs.localization.line_matching import LinePoints, Matches, match
 from procs.localization.pose_filter import PoseFilter
@@ -92,7 +93,8 @@ class SelfLocalizer:
         """Compass reading minus heading, learnt while localized."""
         self._rivals = 0  # searches in a row with a better place
         self._contradictions = 0  # frames in a row in which the compass contradicts the pose
-        self._seeks = 0  # frames in which the lost robot has searched
+        self.searches = 0
+        """Number of frames in which the robot was lost and searched."""
         self._since_frame_s = 0.0
         self._since_search_s = 0.0
         if start is not None:
@@ -102,6 +104,11 @@ class SelfLocalizer:
     def pose(self) -> Floats:
         """(3): x, y (m), heading (rad), world frame."""
         return self._filter.pose
+
+    @property
+    def places(self) -> Sequence[Hypothesis]:
+        """Places where the robot may be, best first; empty while it is localized."""
+        return self._hypotheses.known
 
     @property
     def covariance(self) -> Floats:
@@ -187,8 +194,8 @@ class SelfLocalizer:
         """Updates the hypotheses of a lost robot with points and compass; takes the pose of one that leads clearly."""
         self.compass_offset_rad *= 1.0 - _share(interval_s, _COMPASS_FORGETS_S)
         thin = points.thinned(self._settings.search_points)
-        turn_rad = _COMPASS_ERRORS_RAD[self._seeks % len(_COMPASS_ERRORS_RAD)]
-        self._seeks += 1
+        turn_rad = _COMPASS_ERRORS_RAD[self.searches % len(_COMPASS_ERRORS_RAD)]
+        self.searches += 1
         others = self._search.best(thin, np.array([heading_rad + turn_rad]), 4)
         found = match(self._lines, thin, self._hypotheses.starts(others))
         turned_rad = np.remainder(found.poses[:, 2] - heading_rad + np.pi, 2 * np.pi) - np.pi
