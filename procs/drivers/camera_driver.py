@@ -127,7 +127,7 @@ class CameraDriver(Component):
         found = self._recorded.picture(number)
         if found is None:
             self._ended = True
-            end = f"{self.config.source} has ended after {self._recorded.count} pictures"
+            end = f"{self.config.source} has ended after picture {self._recorded.count}"
             if self.config.at_end == "fail":
                 raise SourceError(end)
             self.log.info(f"{end}; no more frames")

@@ -99,6 +99,8 @@ def _grey(pixels: Grey) -> Grey:
     Raises:
         ValueError: it is neither grey nor has three colours.
     """
+    if pixels.ndim == 3 and pixels.shape[2] == 1:
+        pixels = pixels[:, :, 0]
     if pixels.ndim == 3 and pixels.shape[2] != 3:
         shape = " x ".join(map(str, pixels.shape))
         raise ValueError(f"the frame is {shape}; the pair needs grey or three colours")

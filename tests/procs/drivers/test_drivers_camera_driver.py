@@ -55,7 +55,7 @@ def test_picture_k_comes_in_tick_k(film: Path) -> None:
 def test_source_ends_with_one_log_line(film: Path) -> None:
     camera = bench(film)
     assert shades_of(camera, 15)[10:] == [10, 11, None, None, None]
-    assert [line.text for line in camera.logged] == [f"{film} has ended after 12 pictures; no more frames"]
+    assert [line.text for line in camera.logged] == [f"{film} has ended after picture 12; no more frames"]
 
 
 def test_source_begins_again_on_request(film: Path) -> None:
@@ -65,7 +65,7 @@ def test_source_begins_again_on_request(film: Path) -> None:
 def test_source_fails_at_its_end_on_request(film: Path) -> None:
     camera = bench(film, at_end="fail")
     camera.iterate(12)
-    with pytest.raises(SourceError, match="has ended after 12 pictures"):
+    with pytest.raises(SourceError, match="has ended after picture 12"):
         camera.iterate()
 
 

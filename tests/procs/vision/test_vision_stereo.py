@@ -302,6 +302,13 @@ def test_frame_without_usable_colours_is_refused() -> None:
         bench.iterate()
 
 
+def test_grey_frame_may_have_a_channel_of_its_own() -> None:
+    grey = np.random.default_rng(1).integers(0, 255, (60, 160), np.uint8)
+    rig = StereoRig()
+    for one, other in zip(rig.halves(grey[:, :, None]), rig.halves(grey), strict=True):
+        assert np.array_equal(one, other)
+
+
 def test_disparity_tells_the_distance() -> None:
     frame = RENDERER.render(
         OWN, [(OWN.x_m + 2.0 * math.cos(OWN.heading_rad), OWN.y_m + 2.0 * math.sin(OWN.heading_rad))]

@@ -54,7 +54,7 @@ def test_a_video_gives_the_same_messages_in_every_process_layout(
             *("--hosting", hosting, "--record", f"{hosting}.lcm"),
         )
         assert run.wait() == 0, run.text
-        assert f"film.mp4 has ended after {TICKS} pictures; no more frames" in run.text
+        assert f"film.mp4 has ended after picture {TICKS}; no more frames" in run.text
     assert difference(tmp_path / "process.lcm", tmp_path / "single.lcm") == ""
     percepts = Recording(tmp_path / "single.lcm").decoded("cyan1/ball_percept")
     assert [percept.visible for percept in percepts] == [True] * TICKS
