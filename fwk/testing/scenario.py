@@ -84,8 +84,14 @@ class Watch:
         return Verdict(time_s, self._broken + (missed + wrong if not self._broken else []))
 
 
-def play(system: Any, expected: Expectations, words: Words | None = None) -> Verdict:
+def play(system: Any, expected: Expectations, words: Words | None = None, from_s: float = 0.0) -> Verdict:
     """Plays a scenario with a system in memory, until its time is over or its verdict is certain.
+
+    Args:
+        system: the system, before its first tick.
+        expected: the conditions.
+        words: functions that the conditions may use.
+        from_s: logical time from which the conditions count; before, the scenario is being set up.
 
     Raises:
         ExpressionError: a condition cannot be understood.
@@ -94,5 +100,6 @@ def play(system: Any, expected: Expectations, words: Words | None = None) -> Ver
     while time_s < expected.time_s - 1e-9 and not watch.finished:
         system.tick()
         time_s = system.now_us / 1e6
-        watch.tick(time_s, system.newest)
+        if time_s >= from_s - 1e-9:
+            watch.tick(time_s, system.newest)
     return watch.verdict(time_s, system.newest)

@@ -24,7 +24,8 @@ from procs.simulation.simulator import SimulatorConfig
 
 BOOK = Path(__file__).parent / "book"
 """Folder of the scenarios that come with the robots."""
-_BALL_S = 0.1
+_BALL_S, _LAID_S = 0.1, 0.15
+"""Time at which the ball is put to its place, and that of the next tick, which shows it there."""
 LONGEST = 100_000
 """Letters of a file at most: a match waits while its crew reads one."""
 _Number = Annotated[FiniteFloat, Strict()]
@@ -62,6 +63,11 @@ class Scenario(Expectations):
     def everyone(self) -> list[str]:
         """Names of all robots."""
         return [*self.robots, *self.seeing, *self.dummies]
+
+    @property
+    def begins_s(self) -> float:
+        """Logical time from which the conditions count: the ball lies at its place."""
+        return _LAID_S if self.ball else 0.0
 
     @property
     def conditions(self) -> list[tuple[tuple[str, int], str]]:
@@ -123,8 +129,8 @@ def _mistakes(scenario: Scenario, config: SimulatorConfig) -> Iterator[str]:
     yield from team_mistakes(thinking, scenario.settings)
     yield from ball_mistakes(scenario.ball, config.field)
     yield from command_mistakes(scenario.commands, scenario.everyone, scenario.time_s, config)
-    if scenario.ball and scenario.time_s <= _BALL_S:
-        yield f"ball: it is put to its place at {_BALL_S:g} s; the scenario ends at {scenario.time_s:g} s"
+    if scenario.ball and scenario.time_s < _LAID_S:
+        yield f"ball: it lies at its place from {_LAID_S:g} s on; the scenario ends at {scenario.time_s:g} s"
     if not scenario.conditions:
         yield "nothing has to happen; give eventually, in_order, always or at_end"
 

@@ -196,7 +196,7 @@ def outcome(scenario: Scenario) -> Verdict:
         ExpressionError: a condition cannot be understood.
     """
     system = system_of(scenario)
-    verdict = play(system, scenario, WORDS)
+    verdict = play(system, scenario, WORDS, scenario.begins_s)
     crew = system.runners[CREW].component
     assert isinstance(crew, Crew)
     while verdict.ok and crew.unanswered and verdict.time_s < scenario.time_s - 1e-9:  # it ended before its commands

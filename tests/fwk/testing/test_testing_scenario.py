@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from fwk.testing import Expectations, Expression, ExpressionError, Watch, reads_messages
+from fwk.testing import Expectations, Expression, ExpressionError, Watch, play, reads_messages
 
 MESSAGES = {"world/state": SimpleNamespace(score=2, names=["a", "b"]), "r1/pose": SimpleNamespace(x_m=1.5)}
 
@@ -129,6 +129,21 @@ def judged(values: list[int], **expected: list[str]) -> list[str]:
 )
 def test_verdict(expected: dict[str, list[str]], broken: list[str]) -> None:
     assert judged([1, 2, 3, 2], **expected) == broken
+
+
+def test_conditions_count_from_the_time_that_is_asked_for() -> None:
+    class Counter:
+        now_us = 0
+
+        def tick(self) -> None:
+            self.now_us += 100_000
+
+        def newest(self, _channel: str) -> Any:
+            return SimpleNamespace(x=self.now_us // 100_000)
+
+    early, late = Expectations(eventually=["w.m.x == 2"], time_s=1.0), Expectations(always=["w.m.x > 2"], time_s=1.0)
+    assert [play(Counter(), early, from_s=from_s).ok for from_s in (0.0, 0.2, 0.3)] == [True, True, False]
+    assert [play(Counter(), late, from_s=from_s).ok for from_s in (0.0, 0.2, 0.3)] == [False, False, True]
 
 
 def test_watch_is_finished_when_nothing_can_change() -> None:

@@ -6,12 +6,13 @@ from typing import Any
 
 import pytest
 
-from fwk.testing import ExpressionError, Verdict
+from fwk.testing import Expression, ExpressionError, Verdict
 from lcmtypes.soccer import line_points_t
 from procs.scenarios import command, evaluation
 from procs.scenarios.dummy import Dummy
 from procs.scenarios.file import BOOK, Scenario, parsed
 from procs.scenarios.scenario import outcome, read, run, system_of
+from procs.scenarios.words import WORDS
 from tests.procs.scenarios.scenario_files import written
 
 SCENARIOS = sorted(BOOK.glob("*.yaml"))
@@ -38,6 +39,21 @@ def test_book_has_scenarios_that_say_what_they_are_for() -> None:
     assert all(path.read_text().startswith("# ") for path in SCENARIOS)
     for scenario in (parsed(path.read_text(), str(path)) for path in SCENARIOS):
         assert scenario.eventually or scenario.in_order or scenario.always or scenario.at_end
+
+
+@pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
+def test_nothing_that_must_happen_holds_from_the_start(path: Path) -> None:
+    """A condition that holds as soon as the ball lies at its place would say nothing about the play."""
+    scenario = read(path)
+    system = system_of(scenario)
+    system.tick(3)
+    for text in scenario.eventually:
+        assert not Expression(text, WORDS).holds(system.newest), text
+
+
+def test_ball_in_the_centre_before_it_is_laid_does_not_count() -> None:
+    text = "dummies: [cyan2]\nball: {x_m: -6.0, y_m: 0.0}\neventually: [x(ball) > -2]\ntime_s: 1\n"
+    assert outcome(parsed(text, "mine.yaml")).broken == ["never: x(ball) > -2"]
 
 
 def test_same_scenario_ends_at_the_same_time_again() -> None:

@@ -116,7 +116,7 @@ from tests.procs.scenarios.scenario_files import written
         (
             "at_end: [reasons]\nball: {x_m: 1.0}\ntime_s: 0.1",
             ScenarioError,
-            "mine.yaml:2: ball: it is put to its place at 0.1 s; the scenario ends at 0.1 s",
+            "mine.yaml:2: ball: it lies at its place from 0.15 s on; the scenario ends at 0.1 s",
         ),
         ("robots: [cyan1]\nat_end: [frobnicate(cyan1)]", ScenarioError, "calls only abs, ball"),
         ("eventually: ['x(ball']", ScenarioError, "never closed"),
