@@ -40,9 +40,10 @@ class Stalls:
 
         A robot stays stalled until it moves, for 10 s at most.
         """
-        obliged, team = _ball_waits(view, game, field), (view.own, *view.mates)
-        self._stands = {robot.name: self._standing(robot) for robot in team}
-        for robot, stand in zip(team, self._stands.values(), strict=True):
+        obliged, team = _ball_waits(view, game, field), {robot.name: robot for robot in (*view.mates, view.own)}
+        self._stands = {name: self._standing(robot) for name, robot in team.items()}
+        for name, stand in self._stands.items():
+            robot = team[name]
             stand.avoided_s -= duration_s
             attacks = obliged and robot.role == ATTACKER and not robot.agreement.passer
             stand.time_s = stand.time_s + duration_s if attacks else 0.0

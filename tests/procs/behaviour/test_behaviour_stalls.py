@@ -45,6 +45,11 @@ def test_stalled_robot_is_tried_again_after_a_while() -> None:
     assert not stalled_after(stalls, 2.0, seen()), "it has the usual time again"
 
 
+def test_mate_with_the_own_name_changes_nothing() -> None:
+    twin = HELD._replace(place=Point(-5.0, 0.0), role=SUPPORTER)
+    assert stalled_after(Stalls(), 3.0, view(HELD, BALL, (KEEPER, twin, SUPPORT, SUPPORT))) == {"cyan2"}
+
+
 def test_robot_finds_itself_stalled() -> None:
     assert stalled_after(Stalls(), 3.0, view(HELD, BALL, (KEEPER, SUPPORT))) == {"cyan2"}
 
