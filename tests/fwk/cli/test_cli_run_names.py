@@ -27,35 +27,41 @@ def listed(folder: Path, *command: str) -> list[dict[str, object]]:
 
 
 @pytest.fixture
-def detached(folder: Path, ports: PortBlock) -> Iterator[subprocess.CompletedProcess[str]]:
-    command = ["fwk-launch", "cards.yaml", "--run", "garden", "--bus-port", str(ports.bus), "--seed", "7"]
+def name(ports: PortBlock) -> str:
+    """A name that no run of another test has: all runs of the machine are found by their names."""
+    return f"cards-{ports.bus}"
+
+
+@pytest.fixture
+def detached(folder: Path, ports: PortBlock, name: str) -> Iterator[subprocess.CompletedProcess[str]]:
+    command = ["fwk-launch", "cards.yaml", "--run", name, "--bus-port", str(ports.bus), "--seed", "7"]
     started = run(folder, *command, "--detach", "--time", "300")  # ends by itself if the test is killed
     yield started
-    run(folder, "fwk", "stop", "--all", "--run", "garden")
+    run(folder, "fwk", "stop", "--all", "--run", name)
 
 
 @pytest.mark.slow
 @pytest.mark.system
 @pytest.mark.core
 def test_a_run_in_the_background_is_found_and_ended(
-    folder: Path, detached: subprocess.CompletedProcess[str], ports: PortBlock
+    folder: Path, detached: subprocess.CompletedProcess[str], ports: PortBlock, name: str
 ) -> None:
     assert detached.returncode == 0, detached.stdout
-    assert "garden: runs in the background" in detached.stdout
-    (mine,) = (each for each in listed(folder, "fwk", "ps") if each.get("name") == "garden")
+    assert f"{name}: runs in the background" in detached.stdout
+    (mine,) = (each for each in listed(folder, "fwk", "ps") if each.get("name") == name)
     assert mine["bus_port"] == ports.bus
-    status = run(folder, "fwk", "status", "--run", "garden")
+    status = run(folder, "fwk", "status", "--run", name)
     assert (status.returncode, "left/counter" in status.stdout) == (0, True)
     (row,) = listed(folder, "fwk", "runs", "list")
-    assert (row["name"], row["seed"], row["in_use"], row["result"]) == ("garden", 7, True, "")
-    again = run(folder, "fwk-launch", "cards.yaml", "--run", "garden")
+    assert (row["name"], row["seed"], row["in_use"], row["result"]) == (name, 7, True, "")
+    again = run(folder, "fwk-launch", "cards.yaml", "--run", name)
     assert again.returncode == 2
-    assert "a run is called 'garden' already" in " ".join(again.stdout.replace("│", " ").split())
-    ended = run(folder, "fwk", "stop", "--all", "--run", "garden")
-    assert (ended.returncode, "garden: ended" in ended.stdout) == (0, True), ended.stdout + ended.stderr
+    assert f"a run is called '{name}' already" in " ".join(again.stdout.replace("│", " ").split())
+    ended = run(folder, "fwk", "stop", "--all", "--run", name)
+    assert (ended.returncode, f"{name}: ended" in ended.stdout) == (0, True), ended.stdout + ended.stderr
     (row,) = listed(folder, "fwk", "runs", "list")
     assert (row["result"], row["exit_code"], row["in_use"]) == ("interrupted", 0, False)
-    assert run(folder, "fwk", "status", "--run", "garden").returncode == 2
+    assert run(folder, "fwk", "status", "--run", name).returncode == 2
 
 
 @pytest.mark.system
@@ -81,24 +87,24 @@ class Sleeper(Component):
 
 
 @pytest.mark.system
-def test_detach_names_the_component_that_the_start_waits_for(folder: Path, ports: PortBlock) -> None:
+def test_detach_names_the_component_that_the_start_waits_for(folder: Path, ports: PortBlock, name: str) -> None:
     write_files(folder, {"procs/sleeper.py": SLEEPER, "launch/slow.yaml": "components: {a/bed: {use: procs.sleeper}}"})
-    command = ["fwk-launch", "slow.yaml", "--bus-port", str(ports.bus), "--run", "slow", "--ticks", "5", "--detach"]
+    command = ["fwk-launch", "slow.yaml", "--bus-port", str(ports.bus), "--run", name, "--ticks", "5", "--detach"]
     result = run(folder, *command)
     assert result.returncode == 0
-    assert re.search(r"^slow: the start has waited [12] s for a/bed$", result.stdout, re.MULTILINE), result.stdout
+    assert re.search(rf"^{name}: the start has waited [12] s for a/bed$", result.stdout, re.MULTILINE), result.stdout
 
 
 @pytest.mark.system
 @pytest.mark.parametrize("output", [">/dev/full", ">&-", "| true"])
-def test_detach_without_output_reports_on_stderr(folder: Path, ports: PortBlock, output: str) -> None:
-    typed = f"fwk-launch cards.yaml --bus-port {ports.bus} --run quiet --time 300 --detach {output}"
+def test_detach_without_output_reports_on_stderr(folder: Path, ports: PortBlock, name: str, output: str) -> None:
+    typed = f"fwk-launch cards.yaml --bus-port {ports.bus} --run {name} --time 300 --detach {output}"
     shell = run(folder, "bash", "-o", "pipefail", "-c", typed)
-    ended = run(folder, "fwk", "stop", "--all", "--run", "quiet")
+    ended = run(folder, "fwk", "stop", "--all", "--run", name)
     assert shell.returncode == 0, shell.stdout
     assert ended.returncode == 0, ended.stdout
     if "full" in output:
-        assert "standard output cannot be written; the run goes on\nquiet: runs in the background" in shell.stdout
+        assert f"standard output cannot be written; the run goes on\n{name}: runs in the background" in shell.stdout
 
 
 @pytest.mark.system
