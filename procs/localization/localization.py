@@ -149,7 +149,7 @@ class Localization(Component):
         self.pose.write()
 
     def _report(self, passed_s: float, points: int, has_heading: bool, searched: bool) -> None:
-        """Says from time to time why the robot does not find its place."""
+        """Logs from time to time the reason for which the robot does not find its place."""
         if self._localizer.localized:
             self._lost.clear()
             return

@@ -1,4 +1,4 @@
-"""Reports to people why a robot does not find its place: counts what the lost robot gets, and words what is wrong."""
+"""Reports the reason for which a robot does not find its place, from the inputs of the lost robot."""
 
 from collections.abc import Sequence
 
@@ -47,7 +47,7 @@ class LostReport:
         return self._period_s >= _PERIOD_S
 
     def text(self, places: Sequence[Hypothesis], settings: LocalizerSettings) -> str:
-        """Returns what is wrong, by the possible places, best first; begins to count anew."""
+        """Returns the reason in words and begins to count anew; `places` are the possible places, best first."""
         reason = self._reason(places, settings)
         self._begin()
         return f"has not found its place for {self._lost_s:.0f} s: {reason}"

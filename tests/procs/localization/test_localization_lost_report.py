@@ -1,4 +1,4 @@
-"""Log lines that say why a robot does not find its place."""
+"""Log lines with the reason for which a robot does not find its place."""
 
 import re
 from collections.abc import Callable
@@ -63,7 +63,7 @@ def turned(imu: imu_t, _now_us: int) -> None:
         ("imu", None, "no heading of a compass came, and both halves of the field look alike"),
     ],
 )
-def test_lost_robot_says_every_ten_seconds_what_it_lacks(port: str, change: Change | None, reason: str) -> None:
+def test_lost_robot_names_its_missing_input_every_ten_seconds(port: str, change: Change | None, reason: str) -> None:
     found = warnings_of(20.5, port, change)
     assert found == [f"has not found its place for {time_s} s: {reason}" for time_s in (10, 20)]
 
