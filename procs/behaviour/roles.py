@@ -16,9 +16,10 @@ from procs.model.robot import ABSENT
 GOALKEEPER, ATTACKER, SUPPORTER, DEFENDER = "goalkeeper", "attacker", "supporter", "defender"
 PASSER = "passer"
 """Took a set piece and may not touch the ball before another robot has."""
+ROLLS_M_S = 0.6
+"""The nearest robot takes a slower ball, whatever was agreed."""
 
 _HAS_BALL_M = 0.09  # beside its body a robot has the ball
-_ROLLS_M_S = 0.6  # the nearest robot takes a slower ball, whatever was agreed
 _STAY_S = 0.6  # an attacker keeps its role unless another is so much faster at the ball
 _STAY_PRESSING_S = 0.3  # a second attacker stays until the team is so much sooner at the ball
 _STAY_M = 1.0  # a robot keeps its role in the formation unless a change saves this much distance
@@ -91,7 +92,7 @@ def receiver(team: Sequence[Robot], view: View) -> Robot | None:
 
     The passer says that it has passed, so that noise of the ball's velocity does not count as a pass.
     """
-    if view.ball.speed_m_s < _ROLLS_M_S or taken(view):
+    if view.ball.speed_m_s < ROLLS_M_S or taken(view):
         return None
     passers = {robot.name: robot for robot in (view.own, *view.mates) if robot.role == PASSER}
     for robot in team:

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from procs.behaviour.game import Game, Whose
-from procs.behaviour.roles import ATTACKER
+from procs.behaviour.roles import ATTACKER, ROLLS_M_S
 from procs.behaviour.view import Robot, View
 from procs.model.field import Field, Point
 
@@ -12,7 +12,6 @@ _STANDS_S = 2.5  # a healthy attacker has driven off, or has kicked, by then
 _MOVED_M = 0.3  # noise of the localization moves a standing robot by less
 _AVOIDED_S = 10.0  # then the robot may have been repaired
 _RIVAL_M = 0.5  # beside the ball; robots that fight for it stand, too
-_ROLLS_M_S = 0.6  # a robot may wait for a faster ball
 _KEEPERS_M = 1.0  # around the own penalty area the attacker leaves the ball to the goalkeeper
 
 
@@ -42,8 +41,8 @@ class Stalls:
         """
         obliged, team = _ball_waits(view, game, field), {robot.name: robot for robot in (*view.mates, view.own)}
         self._stands = {name: self._standing(robot) for name, robot in team.items()}
-        for name, stand in self._stands.items():
-            robot = team[name]
+        for name, robot in team.items():
+            stand = self._stands[name]
             stand.avoided_s -= duration_s
             attacks = obliged and robot.role == ATTACKER and not robot.agreement.passer
             stand.time_s = stand.time_s + duration_s if attacks else 0.0
@@ -63,5 +62,5 @@ def _ball_waits(view: View, game: Game, field: Field) -> bool:
     """Returns whether the ball lies where nothing but the attacker's own drive brings it to the attacker."""
     ball = view.ball
     allowed = game.free_play or (game.whose is Whose.OURS and not game.stopped)
-    lies = ball.known and ball.speed_m_s < _ROLLS_M_S and not view.is_at_ball(view.opponents, _RIVAL_M)
+    lies = ball.known and ball.speed_m_s < ROLLS_M_S and not view.is_at_ball(view.opponents, _RIVAL_M)
     return allowed and lies and not field.in_penalty_area(*ball.place, -1.0, _KEEPERS_M)

@@ -99,9 +99,9 @@ def _grey(pixels: Grey) -> Grey:
     Raises:
         ValueError: it is neither grey nor has three colours.
     """
-    if pixels.ndim == 3 and pixels.shape[2] == 1:
-        pixels = pixels[:, :, 0]
-    if pixels.ndim == 3 and pixels.shape[2] != 3:
+    channels = pixels.shape[2] if pixels.ndim == 3 else 1
+    if channels not in (1, 3):
         shape = " x ".join(map(str, pixels.shape))
         raise ValueError(f"the frame is {shape}; the pair needs grey or three colours")
-    return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY) if pixels.ndim == 3 else pixels, np.uint8)
+    grey = pixels.reshape(pixels.shape[:2]) if channels == 1 else cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY)
+    return np.asarray(grey, np.uint8)
