@@ -125,6 +125,8 @@ class Crew(Component):
         self.log.info(f"the scenario {request.value.name or 'given as text'} begins; it takes {scenario.time_s:g} s")
         if kept := left_out(scenario):
             self.log.warning(f"the match keeps its own settings; the scenario states others: {', '.join(kept)}")
+        if scenario.scripted:
+            self.log.warning(f"a match has no scripted robots; they are held: {', '.join(scenario.scripted)}")
 
     def _hear(self) -> None:
         for action, call in [each for each in self._asked if each[1].finished]:

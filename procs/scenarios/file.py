@@ -15,9 +15,11 @@ from procs.scenarios.mistakes import (
     command_mistakes,
     place_mistakes,
     robot_mistakes,
+    script_mistakes,
     simulator_settings,
     team_mistakes,
 )
+from procs.scenarios.scripted import Step
 from procs.scenarios.words import WORDS
 from procs.simulation.physics.start_places import three_numbers
 from procs.simulation.simulator import SimulatorConfig
@@ -44,6 +46,8 @@ class Scenario(Expectations):
     """Robots with all their components; their percepts are drawn from the truth, with errors."""
     dummies: list[str] = []
     """Robots that stand still."""
+    scripted: dict[str, list[Step]] = {}
+    """Robots that drive and kick by a script, and the steps of each."""
     places: dict[str, Annotated[tuple[_Number, _Number, _Number], BeforeValidator(three_numbers)]] = {}
     """Start of robots: x in m, y in m, heading in rad (world frame); others take their default place."""
     ball: dict[str, _Number] = {}
@@ -62,7 +66,7 @@ class Scenario(Expectations):
     @property
     def everyone(self) -> list[str]:
         """Names of all robots."""
-        return [*self.robots, *self.seeing, *self.dummies]
+        return [*self.robots, *self.seeing, *self.dummies, *self.scripted]
 
     @property
     def begins_s(self) -> float:
@@ -125,8 +129,9 @@ def parsed(text: str, where: str, further: Check = _nothing, last: Check = _noth
 
 def _mistakes(scenario: Scenario, config: SimulatorConfig) -> Iterator[str]:
     thinking = {"robots": scenario.robots, "seeing": scenario.seeing}
-    yield from robot_mistakes({**thinking, "dummies": scenario.dummies}, scenario.places)
+    yield from robot_mistakes({**thinking, "dummies": scenario.dummies, "scripted": scenario.scripted}, scenario.places)
     yield from team_mistakes(thinking, scenario.settings)
+    yield from script_mistakes(scenario.scripted, scenario.time_s)
     yield from ball_mistakes(scenario.ball, config.field)
     yield from command_mistakes(scenario.commands, scenario.everyone, scenario.time_s, config)
     if scenario.ball and scenario.time_s < _LAID_S:

@@ -6,7 +6,7 @@ A mistake begins with the path of its value: `commands.0: place_ball: ...`.
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError
@@ -18,6 +18,7 @@ from procs.model.robot import PLAYERS, player_of, team_of
 from procs.referee.names import Names
 from procs.referee.orders import mistake_in
 from procs.scenarios.action import Action, field_mistakes
+from procs.scenarios.scripted import Step, order_mistake
 from procs.simulation.field_crew import ball_mistake, robot_mistake
 from procs.simulation.physics.room import Room
 from procs.simulation.simulator import SimulatorConfig
@@ -27,7 +28,7 @@ _TURN_RAD = 2 * math.pi
 _DIGITS_MAX = 9
 
 
-def robot_mistakes(named: Mapping[str, Sequence[str]], places: Mapping[str, Any]) -> Iterator[str]:
+def robot_mistakes(named: Mapping[str, Collection[str]], places: Mapping[str, Any]) -> Iterator[str]:
     """Yields what is wrong with the names of robots; `named` holds those under each key of the file.
 
     A name that occurs again is a mistake of its last place.
@@ -63,9 +64,21 @@ def _has_large_number(name: str) -> bool:
     return len(name[len(team_of(name)) :].lstrip("0")) > _DIGITS_MAX
 
 
-def _paths(named: Mapping[str, Sequence[str]]) -> Iterator[tuple[str, str]]:
-    """Yields each robot after the path of its name."""
-    yield from ((f"{key}.{place}", name) for key, names in named.items() for place, name in enumerate(names))
+def _paths(named: Mapping[str, Collection[str]]) -> Iterator[tuple[str, str]]:
+    """Yields each robot after the path of its name: its place in a list, or the name itself where it is a key."""
+    for key, names in named.items():
+        for place, name in enumerate(names):
+            yield f"{key}.{name if isinstance(names, Mapping) else place}", name
+
+
+def script_mistakes(scripted: Mapping[str, Sequence[Step]], time_s: float) -> Iterator[str]:
+    """Yields the steps of scripted robots that do not begin after the ones before, or only after the end."""
+    for robot, steps in scripted.items():
+        if mistake := order_mistake(steps):
+            yield f"scripted.{robot}: {mistake}"
+        for place, step in enumerate(steps):
+            if step.at_s >= time_s:
+                yield f"scripted.{robot}.{place}: at_s is {step.at_s:g}; the scenario ends at {time_s:g} s"
 
 
 def ball_mistakes(fields: Mapping[str, Any], field: Field) -> Iterator[str]:

@@ -21,6 +21,7 @@ from procs.scenarios.crew import Crew
 from procs.scenarios.dummy import Dummy
 from procs.scenarios.file import LONGEST, Scenario, ScenarioError, parsed
 from procs.scenarios.perfect_world import PerfectWorldModel
+from procs.scenarios.scripted import Script
 from procs.scenarios.words import WORDS
 from procs.simulation.percepts import Percepts
 from procs.simulation.radio import Radio
@@ -43,6 +44,7 @@ _SEEING: dict[str, type[Component]] = {
     "localization": Localization,
     "world_model": WorldModel,
 }
+_SCRIPTED: dict[str, type[Component]] = {"base": Base, "kicker": Kicker, "script": Script}
 _LETTERS = 10 * LONGEST
 """Most letters of a file that are read, so that the error names the length of a file that is only somewhat too long."""
 _RADIO = {"messages": "{team}*/team_message", "inboxes": "{team}*/team_inbox"}
@@ -87,6 +89,7 @@ def _check(scenario: Scenario, document: Document) -> None:
 def _stated(scenario: Scenario) -> Iterator[tuple[str, str, str]]:
     """Yields the settings that other keys of the file state: component, setting, and the key."""
     yield from (("world/referee", rule, "rules") for rule in scenario.rules)
+    yield from ((f"{robot}/script", "steps", "scripted") for robot in scenario.scripted)
     for setting, key in (("starts", "places"), ("realism", "realism")):
         if key in scenario.model_fields_set:
             yield "world/simulator", setting, key
@@ -121,6 +124,7 @@ def _components(scenario: Scenario) -> dict[str, type[Component]]:
     components: dict[str, type[Component]] = {"world/simulator": Simulator, "world/referee": Referee, CREW: Crew}
     components |= {f"{robot}/{name}": part for robot in scenario.robots for name, part in _ROBOT.items()}
     components |= {f"{robot}/{name}": part for robot in scenario.seeing for name, part in _SEEING.items()}
+    components |= {f"{robot}/{name}": part for robot in scenario.scripted for name, part in _SCRIPTED.items()}
     components |= {f"team_{team}/radio": Radio for team in sorted(set(map(team_of, scenario.seeing)))}
     return components | {f"{robot}/dummy": Dummy for robot in scenario.dummies}
 
@@ -160,6 +164,8 @@ def _settings(scenario: Scenario) -> tuple[Settings, dict[str, dict[str, str]], 
         "world/referee": rules,
         CREW: {"actions": [action.model_dump(exclude_none=True) for action in scenario.actions]},
     }
+    for robot, steps in scenario.scripted.items():
+        settings[f"{robot}/script"] = {"steps": [step.model_dump(exclude_defaults=True) for step in steps]}
     channels, turns = {}, {}
     for name, part in _components(scenario).items():
         config = _config(part)

@@ -49,7 +49,7 @@ def start_of(scenario: Scenario, robots: Sequence[str], field: Field) -> list[Ac
     for robot, (x_m, y_m, heading_rad) in scenario.places.items():
         actions.append(Action(place_robot={"robot": robot, "x_m": x_m, "y_m": y_m, "heading_rad": heading_rad}))
     for robot in robots:
-        if robot in absent or robot in scenario.dummies:
+        if robot in (*absent, *scenario.dummies, *scenario.scripted):
             actions.append(Action(hold_robot={"robot": robot, "held": True}))
         if robot in absent:
             actions.append(Action(referee={"name": "red_card", "robot": robot}))

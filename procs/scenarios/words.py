@@ -6,7 +6,7 @@ from numbers import Real
 from typing import Any
 
 from fwk.testing import reads_messages
-from lcmtypes.soccer import game_state_t
+from lcmtypes.soccer import game_event_t, game_state_t
 from procs.model.events import Kind
 from procs.model.field import Point
 from procs.model.right_name import right_name
@@ -17,6 +17,9 @@ Newest = Callable[[str], Any]
 _NAMES = {name.lower(): value for name, value in vars(game_state_t).items() if name.isupper()}
 _TEAMS = {name.removeprefix("team_"): value for name, value in _NAMES.items() if name in ("team_cyan", "team_magenta")}
 _STATES = {name: value for name, value in _NAMES.items() if not name.startswith("team_")}
+
+
+_CARDS = {game_event_t.YELLOW: "yellow", game_event_t.DOUBLE_YELLOW: "double_yellow", game_event_t.RED: "red"}
 
 
 @reads_messages
@@ -91,6 +94,19 @@ def _reasons(newest: Newest) -> list[str]:
 
 
 @reads_messages
+def _cards(newest: Newest) -> Callable[[str], list[str]]:
+    def cards(robot: str) -> list[str]:
+        """Returns the cards of a robot so far, in their order."""
+        robots = [each.name for each in newest("world/ground_truth").robots]
+        if str(robot) not in robots:
+            raise KeyError(f"no robot '{robot}'; {right_name(str(robot), robots)}")
+        shown = (event for event in newest("world/match_history").events if event.robot == str(robot))
+        return _Names([_CARDS[event.card] for event in shown if event.card], "card", list(_CARDS.values()))
+
+    return cards
+
+
+@reads_messages
 def _touches(newest: Newest) -> list[str]:
     names = [event.robot for event in newest("world/match_events").events if event.kind in (Kind.TOUCH, Kind.KICK)]
     return _Names(names, "robot", [robot.name for robot in newest("world/ground_truth").robots])
@@ -118,12 +134,14 @@ WORDS: Mapping[str, Callable[..., Any]] = {
     "distance": _distance,
     "state": _state,
     "reasons": _reasons,
+    "cards": _cards,
     "x": _axis(0),
     "y": _axis(1),
     "touching": _touches,
     "events": _events,
     "collision": _hardest,
 }
-"""`ball` is a place and `ball_speed` a number in m/s; `reasons` are those of all whistles; `touching` are the robots at
-the ball, `events` what happens, such as "goal" or "out_end", and `collision` the closing speed, 0 without one, all in
-this tick; `state("free_kick", "cyan")`. A ball in the goal is a "goal" also if it does not count."""
+"""`ball` is a place and `ball_speed` a number in m/s; `reasons` are those of all whistles, `cards("cyan2")` those of a
+robot, such as "yellow"; `touching` are the robots at the ball, `events` what happens, such as "goal" or "out_end", and
+`collision` the closing speed, 0 without one, all in this tick; `state("free_kick", "cyan")`. A ball in the goal is a
+"goal" also if it does not count."""

@@ -41,7 +41,7 @@ from procs.simulation.physics.world import World
 
 Starts = dict[str, Annotated[tuple[float, float, float], BeforeValidator(three_numbers)]]
 StuckWheels = dict[str, tuple[Literal[1, 2, 3], ...]]
-Named = TypeVar("Named", Starts, StuckWheels)
+Named = TypeVar("Named", Starts, StuckWheels, list[str])
 _STOPPED: Wheels = (0.0, 0.0, 0.0)
 _BATTERY_US = US_PER_S  # from one message about the batteries to the next
 _FIELD_TICKS = 100  # from one message with the measures of the field to the next, for readers that come late
@@ -70,6 +70,8 @@ class SimulatorConfig(Config):
     """Wheels and ball handling stop when their command is older, and older than the previous tick."""
     stuck_wheels: StuckWheels = {}
     """Faults: wheels that do not turn, by robot: `{cyan3: [2]}`."""
+    silent_imus: list[str] = []
+    """Faults: robots whose compass, gyro and accelerometers send nothing: `[cyan3]`."""
 
     @field_validator("ball")
     @classmethod
@@ -92,7 +94,7 @@ class SimulatorConfig(Config):
             raise ValueError(mistake)
         return players
 
-    @field_validator("starts", "stuck_wheels")
+    @field_validator("starts", "stuck_wheels", "silent_imus")
     @classmethod
     def _of_robots(cls, named: Named, info: ValidationInfo) -> Named:
         """Refuses robots that the system does not have, as far as its robots are known."""
@@ -150,12 +152,12 @@ class Simulator(Component):
         """Sets the world up.
 
         Raises:
-            ValueError: `starts` or `stuck_wheels` names a robot that does not exist, or two robots have one number.
+            ValueError: a start or a fault is that of a robot that does not exist, or two robots have one number.
         """
         config, noise = self.config, noise_of(self.config.realism, self.config.errors)
         robots = sorted(self.wheel_command)
-        for setting, named in (("starts", config.starts), ("stuck_wheels", config.stuck_wheels)):
-            for mistake in _strangers(named, robots):
+        for setting in ("starts", "stuck_wheels", "silent_imus"):
+            for mistake in _strangers(getattr(config, setting), robots):
                 raise ValueError(f"{self.name}: {setting}: {mistake}")
         self._players = _players_of(robots, config.players)
         if mistake := _double(self._players, config.players):
@@ -215,8 +217,9 @@ class Simulator(Component):
             self.field.write()
 
     def _spoil_wheels(self) -> None:
-        for mistake in _strangers(self.config.stuck_wheels, self._world.robots):
-            self.log.warning(f"stuck_wheels: {mistake}")
+        for setting in ("stuck_wheels", "silent_imus"):
+            for mistake in _strangers(getattr(self.config, setting), self._world.robots):
+                self.log.warning(f"{setting}: {mistake}")
         for name, robot in self._world.robots.items():
             robot.drive.stuck = frozenset(wheel - 1 for wheel in self.config.stuck_wheels.get(name, ()))
 
@@ -274,7 +277,7 @@ class Simulator(Component):
                 state = self.wheel_state[name].value
                 state.measured_m_s, state.capture_us = wheels_m_s, now_us
                 self.wheel_state[name].write()
-            if name in self.imu:
+            if name in self.imu and name not in self.config.silent_imus:
                 imu = self.imu[name].value
                 imu.heading_rad, imu.yaw_rate_rad_s, imu.ax_m_s2, imu.ay_m_s2, *deviations = inertial
                 imu.heading_sd_rad, imu.yaw_rate_sd_rad_s, imu.acceleration_sd_m_s2 = deviations

@@ -81,6 +81,7 @@ robots:
         ),
         ("world/simulator.starts={cyan7: [-1, 0, 0]}", "starts: no robot 'cyan7'; there are: cyan1, cyan2, "),
         ("world/simulator.stuck_wheels={cyan7: [1]}", "stuck_wheels: no robot 'cyan7'; there are: cyan1, cyan2, "),
+        ("world/simulator.silent_imus=[cyan7]", "silent_imus: no robot 'cyan7'; there are: cyan1, cyan2, "),
         ("world/simulator.stuck_wheels={cyan1: [2, 2]}", "cyan1: wheel 2 occurs twice; name each wheel once"),
         ("world/simulator.stuck_wheels={cyan1: [4]}", "'stuck_wheels.cyan1.0' is 4; it should be 1, 2 or 3"),
         ("shared.players={cyan1: {team: cyan, number: 2}}", "players: cyan1 and cyan2 are both cyan 2"),

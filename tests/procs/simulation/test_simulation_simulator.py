@@ -95,7 +95,21 @@ def test_stuck_wheel_lames_its_robot_and_comes_free() -> None:
     assert abs(tick(world, 20, cyan1=forward).robots[0].omega_rad_s) < 0.05
 
 
+def test_silent_imu_sends_nothing_and_changes_no_other_sensor() -> None:
+    world, sound = bench(silent_imus=["cyan1"]), bench()
+    for each in (world, sound):
+        tick(each, 5)
+    assert [len(each.port("imu", "cyan1").sent) for each in (world, sound)] == [0, 5]
+    others = [each.port("imu", "cyan2").sent[-1].heading_rad for each in (world, sound)]
+    assert others[0] == others[1]
+    world.component.config.silent_imus = []
+    tick(world, 1)
+    assert len(world.port("imu", "cyan1").sent) == 1
+
+
 def test_fault_of_a_robot_that_is_not_there_is_named() -> None:
+    with pytest.raises(ValueError, match="silent_imus: no robot 'cyan9'; there are: cyan1, cyan2, magenta1"):
+        bench(silent_imus=["cyan9"])
     with pytest.raises(ValueError, match="stuck_wheels: no robot 'cyan9'; there are: cyan1, cyan2, magenta1"):
         bench(stuck_wheels={"cyan9": [1]})
     with pytest.raises(ValueError, match="stuck_wheels"):
@@ -110,7 +124,7 @@ def test_two_robots_with_one_number_are_refused() -> None:
 
 def test_settings_of_the_finished_world_are_fixed() -> None:
     live = {name for name, field in SimulatorConfig.model_fields.items() if not field.frozen}
-    assert live - {"log_level"} == {"command_timeout_s", "stuck_wheels"}
+    assert live - {"log_level"} == {"command_timeout_s", "silent_imus", "stuck_wheels"}
 
 
 @pytest.mark.parametrize(("period_s", "timeout_s"), [(0.05, 0.25), (0.05, 1e-9), (0.5, 0.25)])
