@@ -17,7 +17,7 @@ FOUND_S = 10.0
 """A robot that was carried away has so long to find its place."""
 _WRONG_M, _WRONG_RAD = 1.0, 0.5
 _RIGHT_M, _RIGHT_RAD = 0.3, 0.3
-_CARRIED_M_S, _CARRIED_RAD_S = 20.0, 20.0  # a robot that moves or turns faster was carried
+_CARRIED_M_S, _CARRIED_RAD_S = 8.0, 12.0  # a robot that moves or turns faster, twice as fast as it can, was carried
 _STANDS_M_S, _STANDS_RAD_S = 0.05, 0.1  # a robot that moves no faster stands
 _JUMP_M = 0.5  # a believed pose that departs so far from the true motion within a tick has jumped
 

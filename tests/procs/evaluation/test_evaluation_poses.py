@@ -59,6 +59,20 @@ def test_robot_that_is_turned_by_hand_was_carried() -> None:
     assert found["kidnapped, time until found"].tolist() == pytest.approx([0.5])
 
 
+@pytest.mark.parametrize(("way_m", "turn_rad"), [(0.5, 0.65), (0.1, 0.65), (0.45, 0.3)])
+def test_robot_carried_a_short_way_cannot_know_at_once(way_m: float, turn_rad: float) -> None:
+    made = carried_piece()
+    for tick, truth in made.truth.items():
+        after = tick >= FIRST + 10
+        truth.robots = [true_robot_t(name="cyan1", x_m=way_m * after, heading_rad=turn_rad * after)]
+    made.by_robot["pose"] = {"cyan1": {tick: believes(way_m * (tick >= FIRST + 20)) for tick in made.truth}}
+    for tick, pose in made.by_robot["pose"]["cyan1"].items():
+        pose.heading_rad = turn_rad * (tick >= FIRST + 20)
+    found = pose_samples(made)
+    assert (found["wrong pose believed"][0, 0], found["pose jumps"][0, 0]) == (0, 0)
+    assert found["kidnapped, time until found"].tolist() == pytest.approx([0.5])
+
+
 def test_standing_robot_has_rows_of_its_own() -> None:
     made = Piece(0.05)
     for tick in range(FIRST, FIRST + 20):
