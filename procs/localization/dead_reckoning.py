@@ -1,5 +1,7 @@
 """Motion of a robot from tick to tick: its way by the wheels, its turn by the gyro, which does not slip."""
 
+import math
+
 import numpy as np
 
 from fwk import Clock
@@ -21,6 +23,7 @@ class DeadReckoning:
         """Present velocity in the robot frame; zeros before the first odometry."""
         self.turning_rad_s = 0.0
         """Mean turning speed of the newest motion."""
+        self._turning_sd_rad_s = 0.0  # of the wheels turning speed, as the newest odometry states it
         self._clock = clock
         self._last: odometry_t | None = None
         self._last_us = 0
@@ -38,7 +41,7 @@ class DeadReckoning:
 
         Args:
             odometry: of this tick; None if there is none. One that cannot be counts as none.
-            yaw_rate_rad_s: of the gyro in this tick; without it, the turn is that of the wheels, too.
+            yaw_rate_rad_s: of the gyro in this tick; without it, the turn is that of the wheels, with their error.
         """
         if odometry is None or not _is_sound(odometry):
             return self._reckoned(yaw_rate_rad_s)
@@ -50,15 +53,17 @@ class DeadReckoning:
         self.velocity_m_s = now.vx_m_s, now.vy_m_s
         turn_rad = wrap_rad(now.heading_rad - heading_rad)
         self.turning_rad_s = now.omega_rad_s if plausible(now.omega_rad_s) else 0.0
+        self._turning_sd_rad_s = _turning_sd_rad_s(now)
         way_m = rotation(-heading_rad - turn_rad / 2) @ (now.x_m - x_m, now.y_m - y_m)
         too_far = np.hypot(*way_m) > FASTEST_M_S * longest_s or abs(turn_rad) > FASTEST_RAD_S * longest_s
         if too_far or (last and now.path_length_m < last.path_length_m):
             way_m, turn_rad = np.zeros(2), 0.0  # the driver restarted: its frame has moved, not the robot
+        turn_sd_rad = moved_s * self._turning_sd_rad_s if last and yaw_rate_rad_s is None else 0.0
         if yaw_rate_rad_s is not None:
             mean_rad_s = self._mean_rad_s(yaw_rate_rad_s)
             if last:
                 turn_rad, self.turning_rad_s = wrap_rad(mean_rad_s * moved_s), mean_rad_s
-        return Motion(float(way_m[0]), float(way_m[1]), turn_rad, float(np.hypot(*self.velocity_m_s)))
+        return Motion(float(way_m[0]), float(way_m[1]), turn_rad, float(np.hypot(*self.velocity_m_s)), turn_sd_rad)
 
     def _reckoned(self, yaw_rate_rad_s: float | None) -> Motion:
         """Returns the motion of a tick without odometry. What is wrong with it is made good with the next odometry."""
@@ -68,6 +73,7 @@ class DeadReckoning:
         if self._last is None or silent_s > _RECKONED_S:
             return Motion(0.0, 0.0, 0.0, 0.0)
         passed_s, self._moved_us = self._clock.since_s(self._moved_us), self._clock.now_us
+        turn_sd_rad = passed_s * self._turning_sd_rad_s if yaw_rate_rad_s is None else 0.0
         if yaw_rate_rad_s is not None:
             self.turning_rad_s = self._mean_rad_s(yaw_rate_rad_s)
         turn_rad, (x_m, y_m, heading_rad) = passed_s * self.turning_rad_s, self._place
@@ -76,12 +82,18 @@ class DeadReckoning:
         vx_m_s, vy_m_s = rotation(-turn_rad) @ self.velocity_m_s
         self.velocity_m_s = float(vx_m_s), float(vy_m_s)
         self._place = x_m + float(way_x_m), y_m + float(way_y_m), heading_rad + turn_rad
-        return Motion(float(ahead_m), float(left_m), turn_rad, float(np.hypot(vx_m_s, vy_m_s)))
+        return Motion(float(ahead_m), float(left_m), turn_rad, float(np.hypot(vx_m_s, vy_m_s)), turn_sd_rad)
 
     def _mean_rad_s(self, yaw_rate_rad_s: float) -> float:
         """Returns the mean of this yaw rate and the one before."""
         before_rad_s, self._yaw_rate_rad_s = self._yaw_rate_rad_s, yaw_rate_rad_s
         return (yaw_rate_rad_s + before_rad_s) / 2
+
+
+def _turning_sd_rad_s(odometry: odometry_t) -> float:
+    """Returns the deviation of the wheels' turning speed; 0 if the odometry states none that can be."""
+    variance = odometry.velocity_covariance[2][2]
+    return math.sqrt(variance) if 0.0 <= variance <= FASTEST_RAD_S**2 else 0.0
 
 
 def _is_sound(odometry: odometry_t) -> bool:

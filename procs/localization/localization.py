@@ -232,8 +232,9 @@ class Localization(Component):
             way = self._recent.since(points.capture_us)
             if way is None:
                 return _NOTHING
-            way_m, turn_rad = way
-            moved = motion_errors(float(np.hypot(*way_m)), turn_rad, age_s)
+            way_m, turn_rad = way.shift_m, way.turn_rad
+            error_m, error_rad = motion_errors(float(np.hypot(*way_m)), turn_rad, age_s)
+            moved = error_m, float(np.hypot(error_rad, way.turn_sd_rad))
         with np.errstate(over="ignore", invalid="ignore"):  # values that cannot be are left out later
             seen_m = product(seen_m - way_m, rotation(turn_rad))
         return SeenPoints(seen_m[:, 0], seen_m[:, 1], moved)

@@ -36,15 +36,23 @@ class PoseFilter:
         self._interval_s = _TICK_S  # between the last two frames
         self._since_frame_s = 0.0
         self._blind_ways_m = np.zeros((2, 2))  # without frames: sums of the ways ahead and to the left, in columns
+        self._turned_sd_rad = 0.0  # since the last frame, by wheels
         self._blind_m2 = np.zeros((2, 2))  # the part of the covariance that comes from these ways
 
     def predict(
-        self, ahead_m: float, left_m: float, turn_rad: float, duration_s: float = _TICK_S, scale_sd: float = 0.0
+        self,
+        ahead_m: float,
+        left_m: float,
+        turn_rad: float,
+        duration_s: float = _TICK_S,
+        scale_sd: float = 0.0,
+        turn_sd_rad: float = 0.0,
     ) -> None:
         """Moves the pose by the odometry of `duration_s`: a way in the robot's former frame, and a turn.
 
         Ways ahead and ways to the left are wrong by a share each, with the deviation `scale_sd`, which stays the same.
-        Without frames, these errors grow with the whole way, and shrink if the robot drives back.
+        Without frames, these errors grow with the whole way, and shrink if the robot drives back. So does a turn by the
+        wheels, which has the deviation `turn_sd_rad` besides: wheels of different sizes turn a robot that drives ahead.
         """
         middle_rad = float(self.pose[2]) + turn_rad / 2
         axes = rotation(middle_rad)
@@ -55,6 +63,8 @@ class PoseFilter:
         strain = self._strain_1_s * math.sqrt(_STRAIN_SHARE * duration_s * self._interval_s)
         noise = strain[:, None] * strain
         noise[_AXES, _AXES] += error_m**2, error_m**2, error_rad**2
+        before_rad, self._turned_sd_rad = self._turned_sd_rad, self._turned_sd_rad + turn_sd_rad
+        noise[2, 2] += self._turned_sd_rad**2 - before_rad**2
         self._since_frame_s += duration_s
         if self._since_frame_s > _BLIND_S:
             self._blind_ways_m += axes * (ahead_m, left_m)
@@ -73,7 +83,7 @@ class PoseFilter:
         self._interval_s = interval_s = max(interval_s, 1e-3)
         if self._since_frame_s > _BLIND_S:
             self._blind_ways_m, self._blind_m2 = np.zeros((2, 2)), np.zeros((2, 2))
-        self._since_frame_s = 0.0
+        self._since_frame_s = self._turned_sd_rad = 0.0
         innovation = pose - self.pose
         innovation[2] = wrap_rad(float(innovation[2]))
         share = -math.expm1(-interval_s / _STRAIN_MEMORY_S)

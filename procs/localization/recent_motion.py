@@ -18,6 +18,8 @@ class Way(NamedTuple):
     shift_m: Floats
     """(2): ahead and left."""
     turn_rad: float
+    turn_sd_rad: float = 0.0
+    """Deviation of turns by the wheels."""
 
 
 class RecentMotion:
@@ -36,7 +38,7 @@ class RecentMotion:
         """Returns the way from a time until now; None if the memory does not reach back to that time."""
         if not self._steps or time_us < self._steps[0][0]:
             return None
-        shift_m, turn_rad = np.zeros(2), 0.0
+        shift_m, turn_rad, turn_sd_rad = np.zeros(2), 0.0, 0.0
         for from_us, to_us, motion in self._steps:
             if to_us <= time_us:
                 continue
@@ -44,4 +46,5 @@ class RecentMotion:
             middle_rad = turn_rad + share * motion.turn_rad / 2
             shift_m = shift_m + rotation(middle_rad) @ (share * motion.ahead_m, share * motion.left_m)
             turn_rad += share * motion.turn_rad
-        return Way(shift_m, turn_rad)
+            turn_sd_rad += share * motion.turn_sd_rad
+        return Way(shift_m, turn_rad, turn_sd_rad)

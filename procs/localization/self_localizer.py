@@ -74,6 +74,8 @@ class Motion:
     left_m: float
     turn_rad: float
     speed_m_s: float
+    turn_sd_rad: float = 0.0
+    """Deviation of a turn by the wheels, which lasts from motion to motion; 0 with a gyro."""
 
 
 class SelfLocalizer:
@@ -145,7 +147,8 @@ class SelfLocalizer:
         self._since_frame_s += duration_s
         self._since_search_s += duration_s
         scale_sd = self._settings.errors.wheel_scale_sd
-        self._filter.predict(motion.ahead_m, motion.left_m, motion.turn_rad, duration_s, scale_sd)
+        way_m = motion.ahead_m, motion.left_m
+        self._filter.predict(*way_m, motion.turn_rad, duration_s, scale_sd, motion.turn_sd_rad)
         self._hypotheses.predict(motion.ahead_m, motion.left_m, motion.turn_rad)
         if len(x_m) < self._settings.least_points:
             return

@@ -9,6 +9,7 @@ import pytest
 from fwk.model.errors import PlanError
 from fwk.testing import Bench, launch_plan
 from procs.localization.localization import Localization, LocalizationConfig
+from procs.localization.pose_filter import PoseFilter
 from tests.procs.localization.localization_parts import (
     PERIOD_S,
     Course,
@@ -318,3 +319,41 @@ def test_robot_without_frames_claims_what_it_knows(realism: str, scale_sd: float
                 covariance = np.array(bench.port("pose").sent[-1].covariance)
                 surprises.append(robot.error(bench) @ np.linalg.solve(covariance, robot.error(bench)))
     assert np.mean(surprises) < 4.0, "3 for an honest covariance"
+
+
+def test_robot_without_a_gyro_claims_what_wheels_know() -> None:
+    """Wheels of slightly different sizes turn a robot that drives ahead, in the same direction all the time."""
+    sets = (
+        "world/simulator.silent_imus=[cyan1]",
+        "world/simulator.starts={cyan1: [1.0, 2.0, 0.5]}",
+        "cyan1/localization.start_x_m=1.0",
+        "cyan1/localization.start_y_m=2.0",
+        "cyan1/localization.start_heading_rad=0.5",
+    )
+    surprises = np.concatenate([wander(seed, sets)[1] for seed in range(4)])
+    assert len(surprises) == 4 * 400
+    assert np.mean(surprises) < 3.5, "3 for an honest covariance"
+
+
+def test_turn_by_wheels_without_frames_stays_wrong() -> None:
+    made = PoseFilter(np.zeros(3), (0.01, 0.01, 0.01))
+    for _ in range(20):
+        made.predict(0.05, 0.0, 0.0, 0.05, turn_sd_rad=0.005)
+    assert math.sqrt(made.covariance[2, 2]) == pytest.approx(0.1, rel=0.05)
+    made.correct(np.zeros(3), np.diag((1e-4, 1e-4, 1e-4)))
+    before = made.covariance[2, 2]
+    made.predict(0.05, 0.0, 0.0, 0.05, turn_sd_rad=0.005)
+    assert made.covariance[2, 2] - before < 1e-4, "the frame has made it good"
+
+
+@pytest.mark.parametrize("variance", [-1.0, math.nan, math.inf, 1e9])
+def test_wheels_that_state_no_error_have_none(variance: float) -> None:
+    deviations = []
+    for stated in (variance, 0.0):
+        bench = Bench(Localization, start_x_m=3.0, start_y_m=2.0, start_heading_rad=0.0)
+        for tick in range(5):
+            covariance = [[0.0] * 3, [0.0] * 3, [0.0, 0.0, stated]]
+            bench.port("odometry").put(x_m=0.05 * tick, vx_m_s=1.0, velocity_covariance=covariance)
+            bench.iterate()
+        deviations.append(bench.port("pose").sent[-1].covariance[2][2])
+    assert deviations[0] == deviations[1]
