@@ -29,6 +29,8 @@ class Hypothesis:
     score: float
     frames: int = 1
     """Number of frames with a match."""
+    newest: float = 0.0
+    """Score in the newest frame."""
     age_s: float = 0.0
     led_s: float = 0.0
     """Time for which it has led steadily."""
@@ -60,10 +62,12 @@ class Hypotheses:
         count, memory = len(self.known), _MEMORY ** (interval_s / _MEMORY_S)
         for each, pose, score in zip(self.known, poses, scores, strict=False):
             each.pose = pose
-            each.score = memory * each.score + (1 - memory) * float(score)
+            each.newest = float(score)
+            each.score = memory * each.score + (1 - memory) * each.newest
             each.frames += 1
             each.age_s += interval_s
-        found = [Hypothesis(pose, float(score)) for pose, score in zip(poses[count:], scores[count:], strict=True)]
+        news = zip(poses[count:], scores[count:], strict=True)
+        found = [Hypothesis(pose, float(score), newest=float(score)) for pose, score in news]
         oldest_first = sorted(self.known, key=lambda each: (-each.age_s, -each.frames, -each.score)) + found
         kept: list[Hypothesis] = []
         for each in oldest_first:
@@ -74,12 +78,19 @@ class Hypotheses:
             each.led_s = each.led_s + interval_s if place == 0 and self._lead >= _STEADY_LEAD else 0.0
 
     def decided(self, good_score: float) -> Hypothesis | None:
-        """Returns the best hypothesis if it scores `good_score`, is old enough, and leads clearly or for long."""
+        """Returns the best hypothesis if it scores `good_score`, is old enough, and leads clearly or for long.
+
+        A small lead has to show in the newest frame, too: of a robot that was set down elsewhere while it was lost, the
+        mean scores tell of the former place.
+        """
         best = self.known[0] if self.known else None
         if best is None or best.score < good_score or best.frames < _LEAST_FRAMES or best.age_s < _OLD_ENOUGH_S:
             return None
-        clear = self._lead > (_CLEAR_LEAD if best.age_s < _PATIENCE_S else _PATIENT_LEAD)
-        return best if clear or best.led_s >= _STEADY_S else None
+        if self._lead > _CLEAR_LEAD:
+            return best
+        late = best.led_s >= _STEADY_S or (best.age_s >= _PATIENCE_S and self._lead > _PATIENT_LEAD)
+        leads = all(best.newest - each.newest >= _STEADY_LEAD for each in self.known[1:])
+        return best if late and leads else None
 
     @property
     def _lead(self) -> float:

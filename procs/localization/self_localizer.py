@@ -31,6 +31,8 @@ _START_DEVIATIONS = (0.3, 0.3, 0.1)  # m, m, rad: of a start that the settings s
 _COMPASS_ERRORS_RAD = (0.0, -0.12, 0.12, -0.24, 0.24)  # errors of the compass that a search tries in turn
 _COMPASS_MEMORY_S = 25.0  # time constant of the compass offset: so slow that a carried robot learns little wrong
 _COMPASS_FORGETS_S = 5.0  # time constant with which the offset fades while the robot searches
+_PLACES, _MANY_PLACES = 4, 16  # that a frame of a search adds; many in a long search, since places ...
+_LONG_S = 1.5  # ... along a touch line hardly differ; before a small lead decides
 _CONTRADICTIONS = 2  # frames in a row in which the compass contradicts a pose that fits: one wrong reading is no proof
 _AS_USUAL = 0.9  # share of its mean score with which a pose fits as before; a robot that was carried away fits worse
 _SCORE_MEMORY_S = 0.5  # time constant of the mean score
@@ -97,6 +99,7 @@ class SelfLocalizer:
         self._contradictions = 0  # frames in a row in which the compass contradicts the pose
         self.searches = 0
         """Number of frames in which the robot was lost and searched."""
+        self._sought_s = 0.0  # time of this search
         self._since_frame_s = 0.0
         self._since_search_s = 0.0
         if start is not None:
@@ -199,7 +202,11 @@ class SelfLocalizer:
         thin = points.thinned(self._settings.search_points)
         turn_rad = _COMPASS_ERRORS_RAD[self.searches % len(_COMPASS_ERRORS_RAD)]
         self.searches += 1
-        others = self._search.best(thin, np.array([heading_rad + turn_rad]), 4)
+        self._sought_s += interval_s
+        is_long = self._sought_s >= _LONG_S
+        others = self._search.best(thin, np.array([heading_rad + turn_rad]), _MANY_PLACES if is_long else _PLACES)
+        if is_long and self._hypotheses.known:
+            others = np.vstack((self._half_a_field_from(self._hypotheses.known[0].pose), others))
         found = match(self._lines, thin, self._hypotheses.starts(others))
         turned_rad = np.remainder(found.poses[:, 2] - heading_rad + np.pi, 2 * np.pi) - np.pi
         scores = np.where(np.abs(turned_rad) < self._settings.compass_limit_rad, found.scores, 0.0)
@@ -209,6 +216,10 @@ class SelfLocalizer:
         decided = self._hypotheses.decided(self._settings.good_score)
         if decided is not None:
             self._found(decided.pose, _FOUND_DEVIATIONS, decided.score)
+
+    def _half_a_field_from(self, pose: Floats) -> Floats:
+        """Returns the pose (3) in the other half that looks most like this one: halfway and goal line change roles."""
+        return pose - (math.copysign(self._lines.field.half_length_m, pose[0]), 0.0, 0.0)
 
     def _shared(self, speed_m_s: float, moved: tuple[float, float]) -> Floats:
         """Returns the covariance (3, 3) of the errors that all points of a frame share."""
@@ -227,7 +238,7 @@ class SelfLocalizer:
         self.localized = True
         self.score = score
         self._rivals = self._contradictions = 0
-        self._since_search_s = 0.0
+        self._since_search_s = self._sought_s = 0.0
         self._hypotheses.clear()
 
     def _lose(self) -> None:

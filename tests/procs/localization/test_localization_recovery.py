@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fwk.testing import Bench, settings_in
+from fwk.testing import Bench, settings_in, system_of
+from lcmtypes.soccer import place_robot_t
 from procs.localization.hypotheses import Hypotheses
 from procs.localization.localization import Localization
 from procs.model.field import Field
@@ -230,3 +231,34 @@ def test_start_counts_at_the_beginning_of_a_run_only(tick: int) -> None:
     assert until_localized(bench, robot, 5.0) < math.inf
     known = [sent for sent in bench.port("pose").sent if sent.localized]
     assert all(math.hypot(sent.x_m - robot.pose[0], sent.y_m - robot.pose[1]) < 0.5 for sent in known)
+
+
+@pytest.mark.parametrize("place", [(-1.0, -7.7, 2.8), (-1.6, -7.6, -1.8)])
+def test_robot_beside_a_touch_line_is_not_half_a_field_away(place: tuple[float, float, float]) -> None:
+    """The robot sees a touch line and another line across: the halfway line, or a goal line."""
+    x_m, y_m, heading_rad = place
+    parts = ("world/simulator", "world/referee", *(f"cyan1/{each}" for each in ("base", "percepts", "localization")))
+    still = ("carried_every_s=0", "speed_m_s=0", "turn_rad_s=0")
+    system = system_of(
+        "kidnapped.yaml", (*parts, "cyan1/wanderer").__contains__, 1, [f"*/wanderer.{each}" for each in still]
+    )
+    system.tick(50)
+    system.come_in("world/place_robot@outside", place_robot_t(robot="cyan1", x_m=x_m, y_m=y_m, heading_rad=heading_rad))
+    believed = []
+    for _ in range(150):
+        system.tick()
+        pose = system.newest("cyan1/pose")
+        believed.append((pose.localized, math.dist((pose.x_m, pose.y_m), (x_m, y_m)) < 0.3))
+    lost = believed.index((False, False))
+    assert believed[-1] == (True, True)
+    assert (True, False) not in believed[lost:]
+
+
+def test_small_lead_of_the_past_decides_nothing() -> None:
+    """A robot that was set down elsewhere while it was lost has mean scores of its former place."""
+    hypotheses, poses = Hypotheses(), np.array(((3.0, 7.0, 0.0), (-8.0, 7.0, 0.0)))
+    hypotheses.update(poses, np.array((0.9, 0.8)), 0.0)
+    for scores, decides in (((0.9, 0.8), True), ((0.98, 0.99), False)):
+        for _ in range(35 if decides else 1):
+            hypotheses.update(poses, np.array(scores), 0.08)
+        assert (hypotheses.decided(0.5) is not None) is decides
