@@ -11,7 +11,7 @@ from lcmtypes.soccer import ground_truth_t, place_robot_t
 from procs.model.field import Field
 from procs.model.frames import rotation
 
-_INSIDE_M = 0.7  # places are so far inside the lines
+_INSIDE_M = 0.7  # robots drive to places so far inside the lines
 _THERE_M = 0.5
 
 
@@ -20,6 +20,8 @@ class WandererConfig(Config):
 
     carried_every_s: float = Setting(default=12.0, ge=0.0)
     """Time from one kidnapping to the next; 0: no robot is kidnapped."""
+    carried_inside_m: float = Setting(default=0.7, ge=-2.0, le=3.0)
+    """Robots are put down at least so far inside the lines; below 0 beyond them, too, where there is room."""
     speed_m_s: float = Setting(default=1.5, ge=0.0, le=3.0)
     """Speed of driving."""
     turn_rad_s: float = Setting(default=1.5, ge=0.0, le=4.0)
@@ -67,12 +69,12 @@ class Wanderer(Component):
         self._carried_us = self.clock.now_us
         place = self.place_robot.value
         place.robot = self._robot
-        place.x_m, place.y_m, place.heading_rad = self._drawn().tolist()
+        place.x_m, place.y_m, place.heading_rad = self._drawn(self.config.carried_inside_m).tolist()
         self.place_robot.call()
         self._target = self._drawn()
 
-    def _drawn(self) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-        """Returns a random pose (3) on the field."""
+    def _drawn(self, inside_m: float = _INSIDE_M) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        """Returns a random pose (3) on the field, at least so far inside its lines."""
         field = self.config.field
-        limits = (field.half_length_m - _INSIDE_M, field.half_width_m - _INSIDE_M, math.pi)
+        limits = (field.half_length_m - inside_m, field.half_width_m - inside_m, math.pi)
         return np.asarray(self.rng.uniform(-1.0, 1.0, 3) * limits)

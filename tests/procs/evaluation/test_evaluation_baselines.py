@@ -52,6 +52,20 @@ def test_average_ball_is_the_mean_of_the_teams_newest_sightings() -> None:
     assert not bench.port("average_ball").sent[-1].ball.known
 
 
+def test_wanderers_are_put_down_beyond_the_lines_if_asked() -> None:
+    settings = {"carried_every_s": 0.2, "carried_inside_m": -0.7, "speed_m_s": 0.0, "turn_rad_s": 0.0}
+    wanted = {"world/simulator", "world/referee", "cyan1/base", "cyan1/wanderer"}
+    system = system_of("kidnapped.yaml", wanted.__contains__, 2, wanderer=settings)
+    places_m = set()
+    for _ in range(300):
+        system.tick()
+        robot = system.newest("world/ground_truth").robots[0]
+        places_m.add((round(robot.x_m, 1), round(robot.y_m, 1)))
+    beyond_m = [max(abs(x_m) - 11.0, abs(y_m) - 7.0) for x_m, y_m in places_m]
+    assert 0.0 < max(beyond_m) < 0.75
+    assert min(beyond_m) < -3.0
+
+
 def test_wanderers_drive_and_are_carried_away() -> None:
     here = ("world/", "cyan1/")
     system = system_of("kidnapped.yaml", lambda name: name.startswith(here), 2, wanderer={"carried_every_s": 1.5})
