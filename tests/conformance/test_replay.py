@@ -29,8 +29,8 @@ LINE_UP = {
 """One robot with a radio, and the field."""
 CONFIG = {"scenarios.crew": {"actions": [{"place_ball": {"x_m": 1.0, "y_m": 0.5}}]}}
 """Settings of components that write nothing by default."""
-WHOLE = ("scenarios.dummy",)
-"""Components that are all of a robot."""
+PARTS = {"scenarios.dummy": (), "scenarios.scripted": ("base", "kicker")}
+"""Components that stand in for most of a robot, and its other parts."""
 LATE = {"world_model.ball_spot": 110}
 """Components that write nothing in a short run, with the ticks that they need: the robot has to find the ball."""
 Recorded = Callable[[str, str, int], Path]
@@ -65,7 +65,8 @@ def robot_with(component: type[Component]) -> dict[str, Any]:
     own = {f"cyan1/{port.attribute}" for port in declaration(component).ports if port.writes}
     rivals = {plan.components[each.writer].name.removeprefix("cyan1/") for each in plan.channels if each.name in own}
     use = {"use": f"{component.__module__}:{component.__name__}", "config": CONFIG.get(label(component), {})}
-    kept = {} if label(component) in WHOLE else {key: entry for key, entry in usual.items() if key not in rivals}
+    parts = PARTS.get(label(component), usual)
+    kept = {key: entry for key, entry in usual.items() if key in parts and key not in rivals}
     return kept | {"component": use}
 
 
