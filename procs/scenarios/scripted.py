@@ -27,9 +27,9 @@ class Step(BaseModel):
     """Velocity to the left."""
     omega_rad_s: _Number = 0.0
     """Turning speed, counter-clockwise."""
-    dribble: bool = False
+    dribble: Annotated[bool, Strict()] = False
     """Whether the ball handling is on."""
-    kick_m_s: Annotated[NonNegativeFloat, Strict()] = 0.0
+    kick_m_s: Annotated[FiniteFloat, Field(ge=0.0), Strict()] = 0.0
     """Speed over the ground of one kick, as soon as the robot holds the ball and is charged; 0: none."""
     elevation_rad: Annotated[float, Field(ge=0.0, le=STEEPEST_RAD), Strict()] = 0.0
     """Elevation of the kick."""

@@ -203,6 +203,8 @@ from tests.procs.scenarios.scenario_files import written
         ),
         ("scripted: {cyan2: [{speed: 1}]}", ScenarioError, "no key 'scripted.cyan2.0.speed'"),
         ("scripted: {cyan2: [{kick_m_s: -1}]}", ScenarioError, "it should be greater than or equal to 0"),
+        ("scripted: {cyan2: [{kick_m_s: .inf}]}", ScenarioError, "is inf; it should be a finite number"),
+        ("scripted: {cyan2: [{dribble: 1}]}", ScenarioError, "'scripted.cyan2.0.dribble' is 1; it should be"),
         (
             "scripted: {cyan2: [{vx_m_s: 1}]}\nsettings: {cyan2/script: {steps: []}}\nat_end: [reasons]",
             ScenarioError,
