@@ -34,6 +34,6 @@ class Advantage:
 
 
 def _plays(scene: Scene, team: Team) -> bool:
-    """Returns whether only that team has touched the ball of late."""
+    """Returns whether only that team has touched the ball of late, and has not put it out of the field."""
     others = [robot for robot in scene.sight.touching if team_number(robot) is not team]
-    return team_number(scene.touches.last) is team and not others
+    return team_number(scene.touches.last) is team and not others and scene.lost_by is not team

@@ -45,7 +45,7 @@ class Match:
         self._changing_ends = False
         self._starting = False  # the game starts as soon as the ball is on its spot
         self._repeats = 0  # of the set piece at hand, after breaches
-        self._stretch = Stretch(self.state, spot)
+        self._stretch = Stretch(self.state, self.team, spot)
 
     @property
     def over(self) -> bool:
@@ -191,7 +191,7 @@ class Match:
         excused = misplaced_robots(self.restart, sight, self.ends, self.rules.field) if sight else []
         ball = sight.ball if sight else self.spot
         keeper = sight.goalkeeper(self.team.other) if sight else ""
-        self._stretch = Stretch(self.state, ball, frozenset(excused), keeper)
+        self._stretch = Stretch(self.state, self.team, ball, frozenset(excused), keeper)
 
     def _next_penalty(self) -> Restart:
         assert self.shootout

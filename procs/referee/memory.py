@@ -29,7 +29,7 @@ from procs.referee.touches import Carrier, Touches
 _SPOT = Point(0.0, 0.0)
 _SAMPLES = (
     *(Advantage(), Areas(), BallPlacing(_SPOT), Cards(), Carrier(), Holding(), Pushing(), RuleBook(), Shootout(1)),
-    *(Stretch(State.PLAY, _SPOT), Touches(_SPOT)),
+    *(Stretch(State.PLAY, Team.NONE, _SPOT), Touches(_SPOT)),
 )
 """One object of each class whose attributes are remembered."""
 _NOT_KEPT = frozenset({"rules", "calls"})

@@ -48,9 +48,9 @@ def penalty_scored(scene: Scene, stretch: Stretch, penalty: Restart, time_s: flo
     left = [event for event in scene.sight.events if event.kind in LEAVES]
     attacked = scene.ends.side_of(penalty.team.other)
     again = stretch.released and any(team_number(robot) is penalty.team for robot in scene.sight.touching)
-    off_robot = bool(scene.touches.robots) and all(event.robot for event in left)
+    off_robot = all(event.robot for event in left)
     scored = off_robot and not again and any(event.kind is Kind.GOAL and event.x_m * attacked > 0 for event in left)
     stretch.rolled(scene.sight.ball, scene.rules)
-    late = not scene.touches.robots and time_s >= reach_s
+    late = not stretch.taken and time_s >= reach_s
     missed = bool(left) or late or again or time_s >= scene.rules.shot_s
     return scored if scored or missed else None

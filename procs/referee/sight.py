@@ -26,18 +26,26 @@ class Sight(NamedTuple):
     """Velocity of each robot; a robot that is missing stands still."""
     last_touch: str = ""
     """Robot that touched the ball last, in this tick or before."""
+    bystander: str = ""
+    """Robot that takes no part in the game and touched the ball in this tick, last of all; empty without one."""
 
-    def without(self, robots: frozenset[str]) -> "Sight":
+    def without(self, robots: frozenset[str], shooter: str = "") -> "Sight":
         """Returns the sight without robots that take no part in the game, and without their events.
 
-        A ball that leaves the field off one of them has left it off no robot.
+        A ball that leaves the field off one of them has left it off no robot, except off the `shooter`: that one played
+        the ball while it took part, and no robot has touched the ball since.
         """
         if not robots:
             return self
+        bystander = next(reversed(self.touching), "")
+        if bystander not in robots:
+            bystander = ""
+        nobodys = robots if bystander else robots - {shooter}
         return self._replace(
+            bystander=bystander,
             robots={name: place for name, place in self.robots.items() if name not in robots},
             events=[
-                event._replace(robot="") if event.robot in robots else event
+                event._replace(robot="") if event.robot in nobodys else event
                 for event in self.events
                 if event.kind in LEAVES or robots.isdisjoint((event.robot, event.other))
             ],

@@ -4,7 +4,7 @@ import math
 
 from procs.model.field import Point
 from procs.model.game_states import State
-from procs.model.teams import Ends, Team
+from procs.model.teams import Ends, Team, team_number
 from procs.referee.advantage import Advantage
 from procs.referee.fouls.book import RuleBook, grave_fouls
 from procs.referee.fouls.foul import Foul, Scene
@@ -16,13 +16,17 @@ from procs.referee.touches import Carrier, Touches
 class Stretch:
     """Touches, fouls and rests of the ball since a set piece began."""
 
-    def __init__(self, piece: State, ball: Point, excused: frozenset[str] = frozenset(), keeper: str = "") -> None:
-        """Begins with the ball at a place; robots that the start found misplaced are `excused`.
+    def __init__(
+        self, piece: State, team: Team, ball: Point, excused: frozenset[str] = frozenset(), keeper: str = ""
+    ) -> None:
+        """Begins with a set piece of a team, and the ball at a place; robots that it finds misplaced are `excused`.
 
         `keeper` is the goalkeeper that faces the set piece; empty without one.
         """
         self.piece = piece
         """Set piece at the beginning; PLAY if its team did not take it in its time."""
+        self.team = team
+        """Team that takes the set piece; NONE for a dropped ball."""
         self.excused = excused
         """Robots that no breach of the set piece is held against; those that come back to the field are added."""
         self.keeper = keeper
@@ -40,6 +44,11 @@ class Stretch:
         self._resting_s = 0.0
 
     @property
+    def taken(self) -> bool:
+        """Whether a robot of the team that takes the set piece has touched the ball."""
+        return any(team_number(robot) is self.team for robot in self.touches.robots)
+
+    @property
     def penalty_rolls(self) -> bool:
         """Whether the ball of a penalty was shot in its time, and no robot has touched it since."""
         touches = self.touches
@@ -54,13 +63,12 @@ class Stretch:
         return Scene(duration_s, sight, rules, ends, self.touches, self._carrier)
 
     def rolled(self, ball: Point, rules: Rules) -> bool:
-        """Returns whether the ball has rolled without a touch far enough to be set free, and remembers it.
+        """Returns whether the ball has rolled without a touch far enough to be set free.
 
-        The taker of a set piece may then not touch it again.
+        Remembers that the team of a set piece has set it free: its taker may then not touch it again.
         """
         rolled = math.dist(ball, self.touches.place) >= rules.moved_m
-        taken = bool(self.touches.robots) and self.piece not in (State.PLAY, State.DROP_BALL)
-        self.released = self.released or (taken and rolled)
+        self.released = self.released or (self.taken and rolled and self.piece is not State.PLAY)
         return rolled
 
     def begin_play(self, ball: Point, late: Team) -> None:

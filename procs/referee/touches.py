@@ -25,6 +25,8 @@ class Touches:
         """Robot that touched the ball last; of several in a tick the one that the sight names."""
         self.place = spot
         """Place of the last touch; before the first, that of the ball."""
+        self.bystander = ""
+        """Robot that takes no part in the game and has touched the ball after all others; empty without one."""
         self.again = False
         """The taker has touched the ball again after a free roll, before another robot did."""
         self.double = False
@@ -53,7 +55,8 @@ class Touches:
                 self.again, self.double = True, bool(sight.mates(robot))
             self.taker = self.taker or robot
             self.robots.add(robot)
-            self.last, self.place = robot, place
+            self.last, self.place, self.bystander = robot, place, ""
+        self.bystander = sight.bystander or self.bystander
 
     def watch_rivals(self, duration_s: float, sight: Sight, carrier: str) -> None:
         """Notes whether rivals of the taker have had the ball; `carrier` is the robot that carries it now."""

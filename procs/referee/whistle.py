@@ -4,6 +4,8 @@ A stretch of the game is stopped (robots take position), then started (a set pie
 a ball out of the field, a foul or a deadlock interrupts it.
 """
 
+import math
+
 from procs.model.events import Event, Kind
 from procs.model.field import Point
 from procs.model.game_states import State
@@ -39,7 +41,7 @@ class Whistle(Match):
     def _shooter(self) -> Team:
         """Team of the penalty that is to be shot, or whose shot is under way; NONE without one."""
         if self.state is State.PLAY and self._stretch.penalty_rolls:
-            return team_number(self._stretch.touches.taker)
+            return self._stretch.team
         return self.team if self.state is State.PENALTY else Team.NONE
 
     @property
@@ -58,7 +60,8 @@ class Whistle(Match):
         away = self.cards.sent_off
         self.cards.pass_time(duration_s)
         self._stretch.excused |= away - self.cards.sent_off
-        sight = sight.without(self.cards.sent_off)
+        touches = self._stretch.touches
+        sight = sight.without(self.cards.sent_off, "" if touches.bystander else touches.last)
         if self.over:
             return
         if self.state is State.HALF_TIME:
@@ -87,10 +90,11 @@ class Whistle(Match):
         """Ends the half whose time is over; goals and fouls of this last tick were in time, and a penalty is taken."""
         if not self.stopped:
             scene = self._stretch.watch(duration_s, sight, self.ends, self.rules)
-            left = next((event for event in sight.events if event.kind in LEAVES), None)
-            if left and left.kind is Kind.GOAL:
-                self._count_goal(left, sight)
-            elif not left and self._punish(scene, only=State.PENALTY):
+            goal = next((event for event in sight.events if event.kind is Kind.GOAL), None)
+            verdict = self._judge(goal, sight) if goal else None
+            if verdict and verdict.scorer:
+                self.goal(verdict.scorer)
+            elif self._punish(scene, only=State.PENALTY):
                 return
         self.end_half()
 
@@ -137,36 +141,42 @@ class Whistle(Match):
 
     def _watch(self, duration_s: float, sight: Sight) -> None:
         scene = self._stretch.watch(duration_s, sight, self.ends, self.rules)
+        left = next((event for event in sight.events if event.kind in LEAVES), None)
         if self._is_last_act or self._stretch.suffered:
             self._watch_penalty(scene)
-        elif any(self._ball_left(event, sight) for event in sight.events):
-            return
+        elif left:
+            self._stop_for_ball_out(left, scene)
         elif self.state is State.PLAY:
             self._watch_play(scene)
         else:
             self._watch_set_piece(scene)
 
-    def _ball_left(self, event: Event, sight: Sight) -> bool:
-        """Interrupts the game if the event says that the ball has left the field."""
+    def _stop_for_ball_out(self, event: Event, scene: Scene) -> None:
+        """Interrupts the game because the ball has left the field, or because of a foul before that.
+
+        A goal that counts stands, in spite of a foul in the same tick.
+        """
+        verdict = self._judge(event, scene.sight)
+        if verdict.scorer:
+            self._count_fouls(scene)
+            self.goal(verdict.scorer)
+        elif self._repeat_after_bystander(scene):
+            return
+        elif self._punish(scene._replace(lost_by=verdict.restart.team.other)):
+            suffered = self._stretch.suffered
+            if suffered and not self.stopped:
+                self.interrupt(self.restart, suffered.reason, suffered.robot)
+            return
+        self.interrupt(verdict.restart, verdict.reason)
+
+    def _judge(self, event: Event, sight: Sight) -> goals.Verdict:
+        """Returns which set piece follows a ball that has left the field, and which team has scored with it."""
         field, place, team = self.rules.field, Point(event.x_m, event.y_m), team_number(event.robot)
         if event.kind is Kind.OUT_SIDE:
-            self.interrupt(restarts.after_side_line(place, team, field))
-        elif event.kind is Kind.OUT_END:
-            self.interrupt(restarts.after_goal_line(place, team, field, self.ends))
-        elif event.kind is Kind.GOAL:
-            verdict = self._count_goal(event, sight)
-            self.interrupt(verdict.restart, verdict.reason)
-        else:
-            return False
-        return True
-
-    def _count_goal(self, event: Event, sight: Sight) -> goals.Verdict:
-        """Judges a ball in a goal, and counts the goal if it is one."""
-        stretch = self._stretch
-        verdict = goals.judge(event, stretch.piece, stretch.touches, sight, self.ends, self.rules.field)
-        if verdict.scorer:
-            self.goal(verdict.scorer)
-        return verdict
+            return goals.Verdict(Team.NONE, restarts.after_side_line(place, team, field))
+        if event.kind is Kind.OUT_END:
+            return goals.Verdict(Team.NONE, restarts.after_goal_line(place, team, field, self.ends))
+        return goals.judge(event, self._stretch.piece, self._stretch.touches, sight, self.ends, field)
 
     def _watch_play(self, scene: Scene) -> None:
         ball = scene.sight.ball
@@ -175,12 +185,12 @@ class Whistle(Match):
             self.interrupt(restarts.dropped_ball(ball, self.rules.field), Reason.DEADLOCK)
 
     def _watch_set_piece(self, scene: Scene) -> None:
-        if self._punish(scene) or self._repeat(scene):
+        if self._punish(scene) or self._repeat(scene) or self._repeat_after_bystander(scene):
             return
         if self._is_taken(scene):
             self._play(scene.sight.ball)
         elif self._set_piece_is_late:
-            if self.state is State.PENALTY and not scene.touches.robots:
+            if self.state is State.PENALTY and not self._stretch.taken:
                 self.interrupt(self._goal_kick(), Reason.NOT_TAKEN)
             else:
                 self._play(scene.sight.ball, late=True)
@@ -196,10 +206,10 @@ class Whistle(Match):
         A foul of the team that shoots makes it a miss. One that is the last act is repeated if a foul that brings a
         penalty itself precedes a miss, any other penalty after any foul of the team that defends.
         """
-        if self._repeat(scene):
+        if self._repeat(scene) or self._repeat_after_bystander(scene):
             return
-        if not scene.touches.robots and any(event.kind in LEAVES for event in scene.sight.events):
-            self.interrupt(self.restart)  # a person, or a robot that takes no part, has taken the ball away
+        if not self._stretch.taken and any(event.kind in LEAVES for event in scene.sight.events):
+            self.interrupt(self.restart)  # a person, a defender, or a robot that takes no part has taken the ball away
             return
         stretch, last = self._stretch, self._is_last_act
         reach_s = self.rules.shot_s if self.shootout else self.rules.penalty_s
@@ -238,18 +248,32 @@ class Whistle(Match):
     def _repeat(self, scene: Scene) -> bool:
         """Has the set piece repeated after a breach, twice at most; returns whether it does.
 
-        The third breach is only counted as a foul, once.
+        The third breach is only counted as a foul, once. A penalty is repeated as often as defenders play its ball: the
+        cards for that end it.
         """
         stretch = self._stretch
         foul = breach(scene, self.restart, stretch.excused, stretch.keeper, stretch.released)
-        if foul is None or stretch.breached:
+        played = self.state is State.PENALTY and foul is not None and foul.reason is Reason.EARLY_TOUCH
+        if foul is None or (stretch.breached and not played):
             return False
         self._count_foul(foul)
         stretch.breached = True
-        if self._repeats >= _REPEATS:
+        return self._repeat_for(foul.reason, foul.robot, always=played)
+
+    def _repeat_after_bystander(self, scene: Scene) -> bool:
+        """Has the set piece repeated, twice at most, if a robot that takes no part moved its ball before any other."""
+        touches = scene.touches
+        moved = math.dist(scene.sight.ball, touches.place) >= self.rules.moved_m
+        if self.state is State.PLAY or touches.robots or not touches.bystander or not moved:
+            return False
+        return self._repeat_for(Reason.EARLY_TOUCH, touches.bystander)
+
+    def _repeat_for(self, reason: Reason, robot: str, always: bool = False) -> bool:
+        """Has the set piece repeated because of a robot, unless it was repeated twice; returns whether it does."""
+        if self._repeats >= _REPEATS and not always:
             return False
         repeats = self._repeats + 1
-        self.interrupt(self.restart, foul.reason, foul.robot)
+        self.interrupt(self.restart, reason, robot)
         self._repeats = repeats
         return True
 
@@ -258,9 +282,7 @@ class Whistle(Match):
 
         `only` is the one set piece for which the game is interrupted; None: any.
         """
-        committed, punished = self._stretch.fouls(scene, in_play=self.state is State.PLAY)
-        for foul in committed:
-            self._count_foul(foul)
+        punished = self._count_fouls(scene)
         if not punished:
             return False
         if len(punished) == 1 and self._shooter is team_number(punished[0].robot).other:
@@ -271,9 +293,16 @@ class Whistle(Match):
         self._stop_for(punished, scene.sight.ball)
         return True
 
+    def _count_fouls(self, scene: Scene) -> list[Foul]:
+        """Counts the fouls of a tick, and returns those that are punished now."""
+        committed, punished = self._stretch.fouls(scene, in_play=self.state is State.PLAY)
+        for foul in committed:
+            self._count_foul(foul)
+        return punished
+
     def _suffer(self, foul: Foul) -> None:
         """Repeats a penalty during which its defenders commit a foul: at once, or if the shot at hand is no goal."""
-        if self.state is State.PENALTY and not self._stretch.touches.robots:
+        if self.state is State.PENALTY and not self._stretch.taken:
             self.interrupt(self.restart, foul.reason, foul.robot)
             return
         self._stretch.suffered = foul

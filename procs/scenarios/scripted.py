@@ -15,7 +15,10 @@ _Number = Annotated[FiniteFloat, Strict()]
 
 
 class Step(BaseModel):
-    """Step of a script; the robot does the same until the next one begins. Values that are not given are zero."""
+    """Step of a script; the robot does the same until the next one begins. Values that are not given are zero.
+
+    A step lasts a tick at least: one that should begin in the same tick as the step before begins in the next.
+    """
 
     model_config = ConfigDict(extra="forbid")
 
@@ -75,7 +78,7 @@ class Script(Component):
 
     def loop(self) -> None:
         kicker = self.kicker_state.value
-        while self._left and self._left[0].at_s * US_PER_S <= self.clock.now_us:
+        if self._left and self._left[0].at_s * US_PER_S <= self.clock.now_us:
             self._step, self._kicks = self._left.pop(0), kicker.kicks
         step, command = self._step, self.motor_command.value
         command.enabled = True

@@ -1,9 +1,11 @@
 """Areas: one field player of a team, for 10 s at most, in a penalty area; only its goalkeeper in a goal area (2016).
 
-In the opponents' areas a goalkeeper is a field player. A robot that is alone keeps its own goal, too.
+In the opponents' areas a goalkeeper is a field player. A robot that is alone keeps its own goal, too. A robot that has
+crossed the goal line is still in the areas before it, also in the goal, until all of it is beside the goal and outside.
 """
 
-from procs.model.field import SIDES
+from procs.model.field import SIDES, Point
+from procs.model.geometry import clamp
 from procs.model.teams import Team, team_number
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.reasons import Reason
@@ -48,8 +50,17 @@ class Areas:
 
     @staticmethod
     def _in_penalty_area(scene: Scene, name: str, side: float) -> bool:
-        return scene.rules.field.in_penalty_area(*scene.sight.robots[name], side)
+        return scene.rules.field.in_penalty_area(*_on_field(scene, name), side)
 
     @staticmethod
     def _in_goal_area(scene: Scene, name: str) -> bool:
-        return any(scene.rules.field.in_goal_area(*scene.sight.robots[name], side) for side in SIDES)
+        return any(scene.rules.field.in_goal_area(*_on_field(scene, name), side) for side in SIDES)
+
+
+def _on_field(scene: Scene, name: str) -> Point:
+    """Returns the middle of a robot, or the place on the goal line before it if it is in a goal or partly outside."""
+    place, field = scene.sight.robots[name], scene.rules.field
+    in_goal = any(field.in_goal(*place, side) for side in SIDES)
+    if not in_goal and abs(place.x_m) > field.half_length_m + scene.rules.robot.radius_m:
+        return place
+    return place._replace(x_m=clamp(place.x_m, -field.half_length_m, field.half_length_m))

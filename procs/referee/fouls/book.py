@@ -19,7 +19,7 @@ class RuleBook:
         """Returns the first foul of the tick, and with it one that the other team commits against the same rule."""
         found = [
             collisions(scene),
-            _listed(self._pushing.watch(scene)),
+            self._pushing.watch(scene),
             _listed(double_touch(scene)),
             _listed(dribbling(scene)),
             _listed(self._holding.watch(scene)),

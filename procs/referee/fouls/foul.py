@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from procs.model.field import Point
-from procs.model.teams import Ends
+from procs.model.teams import Ends, Team
 from procs.referee.reasons import Reason
 from procs.referee.rules import Rules
 from procs.referee.sight import Sight
@@ -30,3 +30,5 @@ class Scene(NamedTuple):
     ends: Ends
     touches: Touches
     carrier: Carrier
+    lost_by: Team = Team.NONE
+    """Team that has put the ball out of the field in this tick, so that the other team restarts the game."""

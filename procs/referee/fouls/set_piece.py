@@ -17,7 +17,8 @@ def breach(scene: Scene, restart: Restart, excused: frozenset[str], keeper: str,
     """Returns the breach that repeats a set piece; robots that were misplaced at its start are excused.
 
     Rivals keep their distance until the ball is `released`, or a second robot has touched it: the taker may turn with
-    it first. `keeper` is the goalkeeper that faced it at the start: one that takes its place later has left no area.
+    it first. A rival that keeps its distance to the spot, or to a ball that was taken elsewhere, is not too near.
+    `keeper` is the goalkeeper that faced it at the start: one that takes its place later has left no area.
     """
     if restart.team is Team.NONE:
         return None
@@ -27,8 +28,10 @@ def breach(scene: Scene, restart: Restart, excused: frozenset[str], keeper: str,
         return Foul(min(rivals), Reason.EARLY_TOUCH, restart.spot)
     if released or len(scene.touches.robots) > 1:
         return None
-    near = too_near(restart, scene.sight.robots, scene.ends, scene.rules.field, _INTRUSION_M)
-    intruders = [name for name in set(near) - excused if not taken or team_number(name) is restart.team.other]
+    near = set(_too_near(scene, restart)) - excused
+    if taken:
+        near &= set(_too_near(scene, restart._replace(spot=scene.sight.ball)))
+    intruders = [name for name in near if not taken or team_number(name) is restart.team.other]
     if intruders:
         return Foul(_first(intruders, restart.team), Reason.TOO_NEAR, restart.spot)
     if taken:
@@ -37,6 +40,10 @@ def breach(scene: Scene, restart: Restart, excused: frozenset[str], keeper: str,
     if crossed:
         return Foul(_first(crossed, restart.team), Reason.WRONG_HALF, restart.spot)
     return _keeper_left_goal(scene, restart, keeper) if keeper not in excused else None
+
+
+def _too_near(scene: Scene, restart: Restart) -> list[str]:
+    return too_near(restart, scene.sight.robots, scene.ends, scene.rules.field, _INTRUSION_M)
 
 
 def _first(robots: Collection[str], team: Team) -> str:

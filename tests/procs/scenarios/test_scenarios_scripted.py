@@ -47,6 +47,17 @@ def test_robot_without_steps_stands() -> None:
     assert robot(system, "cyan2").x_m == pytest.approx(2.0)
 
 
+def test_steps_of_the_same_tick_follow_each_other() -> None:
+    system = system_with("[{at_s: 0.501, vx_m_s: 1.0, kick_m_s: 3.0}, {at_s: 0.502, vy_m_s: 0.5}, {at_s: 0.503}]")
+    said = []
+    for _ in range(30):
+        system.tick()
+        command: Any = system.newest("cyan2/motor_command")
+        said.append((command.vx_m_s, command.vy_m_s))
+    begun = said.index((1.0, 0.0))
+    assert said[begun : begun + 4] == [(1.0, 0.0), (0.0, 0.5), (0.0, 0.0), (0.0, 0.0)]
+
+
 def test_step_kicks_once_when_the_robot_has_the_ball() -> None:
     system = system_with(
         "[{at_s: 0.3, vx_m_s: 0.8, dribble: true, kick_m_s: 3.0}, {at_s: 1.5, vx_m_s: 3.0}]",
