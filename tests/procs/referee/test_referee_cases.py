@@ -76,6 +76,8 @@ CASES = {
         "mirrored.test_foul_of_the_defenders_at_a_penalty",
         "match.test_fouled_penalty_is_repeated_once_its_shot_is_over",
         "match.test_fouled_penalty_may_go_in_off_the_keeper",
+        "rare.test_penalty_is_repeated_as_often_as_defenders_touch",
+        "rare.test_collision_as_a_penalty_goes_out_repeats_it",
     ],
     "deciding penalty: one shot": [
         "cases.test_deciding_penalty_is_one_shot",
@@ -105,8 +107,13 @@ CASES = {
         "fouls.test_pushing_a_rival_away_is_a_foul",
         "fouls.test_collision_in_the_own_area_brings_a_penalty",
         "limits.test_robot_that_a_rival_drives_pushes_no_other",
+        "rare.test_robot_close_behind_a_rival_does_not_push_it",
+        "rare.test_collision_in_the_tick_of_a_ball_out",
     ],
-    "areas: one field player for 10 s, only the keeper in the goal area": ["fouls.test_areas"],
+    "areas: one field player for 10 s, only the keeper in the goal area": [
+        "fouls.test_areas",
+        "rare.test_field_player_behind_its_goal_line_is_in_the_area",
+    ],
     "goal from the own half": ["fouls.test_goal_from_the_own_half_does_not_count"],
     "goal without a pass of 1 m after winning the ball in the own half": [
         "fouls.test_ball_won_in_the_own_half_must_be_passed"
@@ -114,12 +121,14 @@ CASES = {
     "both teams at fault at once": [
         "limits.test_both_teams_crowd_an_area_and_the_ball_is_dropped",
         "limits.test_two_collisions_at_once_bring_a_dropped_ball",
+        "rare.test_two_that_push_at_once_bring_a_dropped_ball",
         "limits.test_rivals_are_named_of_those_that_breach_a_kick_off",
     ],
     "advantage": [
         "advantage.test_foul_waits_while_its_victims_have_the_ball",
         "advantage.test_advantage_is_over_after_three_seconds",
         "advantage.test_contact_stops_the_game_while_a_foul_is_held_back",
+        "rare.test_foul_is_punished_when_its_victims_put_the_ball_out",
     ],
     "start with two robots at least": [
         "cases.test_match_waits_for_two_robots_of_each_team",
@@ -139,6 +148,11 @@ CASES = {
         "match.test_third_foul_brings_yellow_then_the_robot_leaves",
         "match.test_double_yellow_takes_a_robot_out_for_90_s",
         "match.test_red_card_is_for_the_rest_of_the_match",
+    ],
+    "robots off the field take no part": [
+        "bystanders.test_robot_with_a_red_card_scores_no_goal",
+        "bystanders.test_robot_sent_off_that_moves_the_ball_repeats",
+        "bystanders.test_goal_counts_whose_shooter_has_left_since",
     ],
     "repair and substitution for 20 s, park": ["cases.test_robot_is_away_for_twenty_seconds"],
     "every command by hand": ["component.test_command_by_hand", "cases.test_commands_by_hand_about_goals_and_cards"],
