@@ -12,6 +12,7 @@ from procs.model.game_states import State
 from procs.model.teams import Team
 from procs.referee.cards import Card
 from procs.referee.memory import recall, written
+from procs.referee.orders import COMMANDS, carry_out
 from procs.referee.reasons import Reason
 from procs.referee.rules import Rules
 from procs.referee.sight import Sight
@@ -90,8 +91,8 @@ class Chance:
 
 
 def exchanged(robot: str) -> str:
-    """Returns the robot of the same number in the other team."""
-    team, number = robot[:-1], robot[-1:]
+    """Returns the robot of the same number in the other team, or the other team."""
+    team, number = robot.rstrip("0123456789"), robot.lstrip("acegimnty")
     return robot and ("magenta" if team == "cyan" else "cyan") + number
 
 
@@ -140,9 +141,7 @@ def test_random_match_is_the_same_with_exchanged_teams(seed: int) -> None:
     for tick in range(4000):
         sight = chance.sight()
         if tick % 50 == 25:  # the referee is restarted
-            again = Whistle(ours.rules)
-            recall(again, written(ours))
-            ours, chance.whistle = again, again
+            ours = chance.whistle = restarted(ours)
         if tick % 400 == 300:
             robot = NAMES[(seed + tick // 400) % 10]
             for whistle, name in ((ours, robot), (theirs, exchanged(robot))):
@@ -155,3 +154,35 @@ def test_random_match_is_the_same_with_exchanged_teams(seed: int) -> None:
         states.add(ours.state)
     assert len(states) >= 8
     assert ours.over or State.PLAY in states
+
+
+@pytest.mark.parametrize("automatic", [True, False])
+@pytest.mark.parametrize("seed", range(3))
+def test_random_commands_do_the_same_for_both_teams(seed: int, automatic: bool) -> None:
+    rules = TIMES | {"decide": True, "automatic": automatic, "half_s": 60.0}
+    ours, theirs = Whistle(Rules(**rules)), Whistle(Rules(**rules, first_kick_off="magenta"))
+    chance, orders, done = Chance(seed, ours), random.Random(seed), set()
+    for tick in range(3000):
+        sight = chance.sight()
+        ours.step(TICK_S, sight)
+        theirs.step(TICK_S, other_side(sight))
+        if orders.random() < 0.1:
+            name, team = orders.choice(COMMANDS), orders.choice(("", "cyan", "magenta"))
+            robot = orders.choice(NAMES) if orders.random() < 0.1 else ""
+            refused = carry_out(ours, sight, name, team, robot)
+            refused_to_others = carry_out(theirs, other_side(sight), name, exchanged(team), exchanged(robot))
+            assert bool(refused) == bool(refused_to_others), (
+                f"tick {tick}: {name} {team} {robot}: {refused or refused_to_others}"
+            )
+            done |= set() if refused else {name}
+            ours = chance.whistle = restarted(ours)
+        assert stand(ours, mirrored=True) == stand(theirs, mirrored=False), f"tick {tick}: {sight.events}"
+    assert len(done) > 0.8 * len(COMMANDS), "most commands are not always refused"
+
+
+def restarted(whistle: Whistle) -> Whistle:
+    """Returns the referee that goes on after a restart."""
+    again = Whistle(whistle.rules)
+    recall(again, written(whistle))
+    again.calls = whistle.calls
+    return again
