@@ -40,14 +40,18 @@ class Glimpse(NamedTuple):
 
 
 def glimpse_of(ball_m: Floats, ball_radius_m: float, bodies_m: Floats, body_radius_m: float) -> Glimpse:
-    """Returns the visible part of a ball (2) behind upright bodies (k, 2), in the frame of the robot that looks."""
+    """Returns the visible part of a ball (2) behind upright bodies (k, 2), in the frame of the robot that looks.
+
+    As in rendered pictures, bodies whose middle is nearer than that of the ball are before it: also that of a robot
+    that holds the ball beside or behind itself.
+    """
     range_m = max(math.hypot(*ball_m), 1e-6)
     ahead_x, ahead_y = (ball_m / range_m).tolist()
     half_rad = math.asin(min(1.0, ball_radius_m / range_m))
     covered = []  # from right to left, in radii of the ball
     for x_m, y_m in bodies_m.tolist():
         along_m, left_m = ahead_x * x_m + ahead_y * y_m, ahead_x * y_m - ahead_y * x_m
-        if 0.0 < along_m < range_m - body_radius_m:
+        if along_m > 0.0 and math.hypot(x_m, y_m) < range_m:
             middle_rad = math.atan2(left_m, along_m)
             side_rad = math.asin(min(1.0, body_radius_m / math.hypot(x_m, y_m)))
             covered.append(((middle_rad - side_rad) / half_rad, (middle_rad + side_rad) / half_rad))

@@ -12,7 +12,9 @@ from fwk.testing import Bench, MemorySystem
 from lcmtypes.soccer import ball_percept_t, ground_truth_t, line_points_t, obstacle_percepts_t, true_robot_t
 from procs.localization.line_map import line_map
 from procs.model.algebra import Floats
+from procs.model.ball import BALL
 from procs.model.field import Field
+from procs.model.robot import ROBOT
 from procs.simulation.camera import Camera
 from procs.simulation.percept_errors import PerceptErrors
 from procs.simulation.percepts import Percepts
@@ -79,6 +81,26 @@ class Behind(Component):
 
     def loop(self) -> None:
         self.ground_truth.value = truth(world(3.0, 0.0), world(2.4, self.config.aside_m))
+        self.ground_truth.write()
+
+
+class HoldingConfig(Config):
+    """How far the robot that holds the ball has turned its mouth away from the robot that looks."""
+
+    turned_deg: float = 0.0
+
+
+class Holding(Component):
+    """Another robot holds the ball, with its middle 3 m ahead; its mouth is on the left."""
+
+    stage = "pre_loop"
+    ground_truth: Writes[ground_truth_t]
+    config: HoldingConfig
+
+    def loop(self) -> None:
+        turned_rad, held_m = math.radians(self.config.turned_deg), ROBOT.held_ball_m(BALL)
+        ball_m = world(3.0 - held_m * math.cos(turned_rad), held_m * math.sin(turned_rad))
+        self.ground_truth.value = truth(ball_m, world(3.0, 0.0))
         self.ground_truth.write()
 
 
@@ -217,6 +239,22 @@ def test_ball_that_a_robot_hides_in_part_seems_aside(rendered: bool, aside_m: fl
     assert len(lefts_m) == pytest.approx(found, abs=6)
     if found:
         assert np.mean(lefts_m) == pytest.approx(-math.copysign(0.03, aside_m), abs=0.01)
+
+
+@pytest.mark.parametrize("rendered", [False, True])
+@pytest.mark.parametrize(
+    ("turned_deg", "found", "aside_m"), [(60, 40, 0.0), (105, 40, 0.022), (120, 40, 0.04), (135, 0, 0.0)]
+)
+def test_ball_that_another_robot_holds(rendered: bool, turned_deg: float, found: int, aside_m: float) -> None:
+    """The robot hides more and more of it before the middle of the ball is behind the whole robot."""
+    system = seen_through(rendered, Holding, turned_deg=turned_deg)
+    system.tick(40)
+    percepts = map(ball_percept_t.decode, system.sent["cyan1/ball_percept"])
+    lefts_m = [percept.y_m for percept in percepts if percept.visible]
+    assert len(lefts_m) == pytest.approx(found, abs=6)
+    if found:
+        true_m = ROBOT.held_ball_m(BALL) * math.sin(math.radians(turned_deg))
+        assert np.mean(lefts_m) == pytest.approx(true_m + aside_m, abs=0.01)
 
 
 def test_glimpse_of_a_ball_is_that_of_sampled_points() -> None:
