@@ -34,8 +34,9 @@ class BallSight:
     """Standard deviation of a ball's place that the finder states, with the shaking of the mirror."""
     whole: float
     """Visible part from which a ball counts as whole."""
-    hidden_px: float
-    """Growth of that deviation for a ball on the ground of which less is visible, times the part that is missing."""
+    hidden_share: float
+    """Growth of that deviation for a ball on the ground of which less is visible, as a share of its radius in the
+    picture times the part that is missing."""
 
     def found(
         self, at_m: Floats, height_m: float, visible: float, shake_px: tuple[float, float], noise: list[float]
@@ -77,7 +78,8 @@ class BallSight:
         if confidence >= self.least_visible and math.hypot(x_m, y_m) <= self.reach_m:
             percept.visible, percept.confidence = True, confidence
             percept.x_m, percept.y_m = x_m, y_m
-            deviation_px = self.stated_px + self.hidden_px * max(0.0, self.whole - confidence)
+            *_, radius_px = self.mirror.sphere((x_m, y_m, self.radius_m), self.radius_m)
+            deviation_px = self.stated_px + self.hidden_share * radius_px * max(0.0, self.whole - confidence)
             percept.covariance_m2 = claimed(self.mirror, x_m, y_m, deviation_px, deviation_px)
         return percept
 

@@ -98,9 +98,9 @@ class PerceptsConfig(Config):
     ER-Force's threshold."""
     whole_ball: float = Setting(default=0.9, gt=0.0, le=1.0)
     """Visible part of a ball from which it counts as whole. An estimate."""
-    hidden_px: float = Setting(default=2.0, ge=0.0, le=50.0)
-    """Growth in pixels of a ball's stated standard deviation, times the part of a whole ball that is hidden. An
-    estimate."""
+    hidden_share: float = Setting(default=0.5, ge=0.0, le=2.0)
+    """Growth of a ball's stated standard deviation, as a share of its radius in the picture times the part of a whole
+    ball that is hidden. As the detector has it."""
     beyond_line_px: float = Setting(default=2.5, ge=0.0, le=50.0)
     """Pixels of the picture that the detector needs beyond a line. Fitted to rendered pictures."""
     beyond_robot_px: float = Setting(default=4.0, ge=0.0, le=50.0)
@@ -192,7 +192,7 @@ class Percepts(Component):
             self.config.least_visible,
             self._stated.ball_px,
             self.config.whole_ball,
-            self.config.hidden_px,
+            self.config.hidden_share,
         )
         self._lines = line_scan(self.config.field)
 

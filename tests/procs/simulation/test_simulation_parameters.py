@@ -38,7 +38,7 @@ def percepts(**settings: Any) -> list[bytes]:
     [
         ("least_visible", 0.4, 0.9),
         ("whole_ball", 0.9, 0.5),
-        ("hidden_px", 2.0, 5.0),
+        ("hidden_share", 0.5, 1.0),
         ("beyond_line_px", 2.5, 20.0),
         ("beyond_robot_px", 4.0, 40.0),
         ("tilt_share", 0.8, 0.2),

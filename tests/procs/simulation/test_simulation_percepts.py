@@ -85,22 +85,23 @@ class Behind(Component):
 
 
 class HoldingConfig(Config):
-    """How far the robot that holds the ball has turned its mouth away from the robot that looks."""
+    """The robot that holds the ball: its distance, and how far its mouth is turned away from the robot that looks."""
 
+    away_m: float = 3.0
     turned_deg: float = 0.0
 
 
 class Holding(Component):
-    """Another robot holds the ball, with its middle 3 m ahead; its mouth is on the left."""
+    """Another robot ahead holds the ball; its mouth is on the left."""
 
     stage = "pre_loop"
     ground_truth: Writes[ground_truth_t]
     config: HoldingConfig
 
     def loop(self) -> None:
-        turned_rad, held_m = math.radians(self.config.turned_deg), ROBOT.held_ball_m(BALL)
-        ball_m = world(3.0 - held_m * math.cos(turned_rad), held_m * math.sin(turned_rad))
-        self.ground_truth.value = truth(ball_m, world(3.0, 0.0))
+        away_m, turned_rad, held_m = self.config.away_m, math.radians(self.config.turned_deg), ROBOT.held_ball_m(BALL)
+        ball_m = world(away_m - held_m * math.cos(turned_rad), held_m * math.sin(turned_rad))
+        self.ground_truth.value = truth(ball_m, world(away_m, 0.0))
         self.ground_truth.write()
 
 
@@ -255,6 +256,19 @@ def test_ball_that_another_robot_holds(rendered: bool, turned_deg: float, found:
     if found:
         true_m = ROBOT.held_ball_m(BALL) * math.sin(math.radians(turned_deg))
         assert np.mean(lefts_m) == pytest.approx(true_m + aside_m, abs=0.01)
+
+
+@pytest.mark.parametrize("away_m", [1.0, 2.0, 4.0])
+def test_ball_hidden_in_part_states_the_same_error(away_m: float) -> None:
+    """A ball of which 30 % are hidden is as uncertain as in pictures, near and far."""
+    stated_m = []
+    for rendered in (False, True):
+        system = seen_through(rendered, Holding, away_m=away_m, turned_deg=110.0)
+        system.tick(20)
+        percepts = map(ball_percept_t.decode, system.sent["cyan1/ball_percept"])
+        stated_m.append(np.mean([math.sqrt(np.trace(each.covariance_m2)) for each in percepts if each.visible]))
+    drawn_m, rendered_m = stated_m
+    assert drawn_m == pytest.approx(rendered_m, rel=0.15)
 
 
 def test_glimpse_of_a_ball_is_that_of_sampled_points() -> None:
