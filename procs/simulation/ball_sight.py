@@ -8,7 +8,7 @@ import numpy as np
 from lcmtypes.soccer import ball_candidate_t, ball_percept_t
 from procs.model.algebra import Floats
 from procs.simulation.percept_errors import PerceptErrors
-from procs.simulation.sight import blurred, claimed, shaken
+from procs.simulation.sight import blurred, claimed
 from procs.vision.ball_finder import IN_THE_AIR, area_share, most_fit, seems_whole
 from procs.vision.mirror import Mirror
 from procs.vision.uncertainty import sphere_covariance
@@ -39,7 +39,7 @@ class BallSight:
     picture times the part that is missing."""
 
     def found(
-        self, at_m: Floats, height_m: float, visible: float, shake_px: tuple[float, float], noise: list[float]
+        self, at_m: Floats, height_m: float, visible: float, moved_px: tuple[float, float], noise: list[float]
     ) -> ball_percept_t:
         """Returns the percept of a ball.
 
@@ -50,11 +50,11 @@ class BallSight:
             at_m: (1, 2), x and y in the robot frame.
             height_m: of its lowest point.
             visible: part of its area that nothing hides.
-            shake_px: shift of the picture forward and left.
+            moved_px: shift of the ball in the picture, along and across the ray.
             noise: standard normal errors of its place along and across the ray, and of its area.
         """
         if height_m <= 0.0:
-            return self._blurred(at_m, visible, shake_px, noise)
+            return self._blurred(at_m, visible, moved_px, noise)
         column, row, radius_px = self.mirror.sphere((*at_m[0].tolist(), height_m + self.radius_m), self.radius_m)
         area = max(_LEAST_AREA, visible * (1.0 + self.errors.ball_area_px / radius_px * noise[2]))
         viewpoint_m = self.mirror.height_m - self.radius_m
@@ -63,14 +63,14 @@ class BallSight:
             *_, expected_px = self.mirror.sphere((*appears_m[0].tolist(), self.radius_m), self.radius_m)
             fit = area * (radius_px / expected_px) ** 2
             if fit <= most_fit(expected_px):
-                return self._blurred(appears_m, min(fit, 1.0 / fit), shake_px, noise)
+                return self._blurred(appears_m, min(fit, 1.0 / fit), moved_px, noise)
         if not self.mirror.shows_all(column, row, radius_px):
             return ball_percept_t()
         spread = float(np.interp(visible, _VISIBLE, _SPREADS))
         if not seems_whole(spread, radius_px):
             return ball_percept_t()
         share = area_share(spread, radius_px)
-        return self._in_the_air(at_m, height_m, area, share, shake_px, noise)
+        return self._in_the_air(at_m, height_m, area, share, moved_px, noise)
 
     def on_ground(self, x_m: float, y_m: float, confidence: float) -> ball_percept_t:
         """Returns the percept of a ball that is found at a place of the robot frame, or of none."""
@@ -84,11 +84,12 @@ class BallSight:
         return percept
 
     def _blurred(
-        self, at_m: Floats, confidence: float, shake_px: tuple[float, float], noise: list[float]
+        self, at_m: Floats, confidence: float, moved_px: tuple[float, float], noise: list[float]
     ) -> ball_percept_t:
-        along, across = shaken(at_m, shake_px)
-        ball_px = self.errors.ball_px
-        moved_m = blurred(self.mirror, at_m, along + ball_px * noise[0], across + ball_px * noise[1])
+        along, across = (
+            np.array([px + self.errors.ball_px * drawn]) for px, drawn in zip(moved_px, noise[:2], strict=True)
+        )
+        moved_m = blurred(self.mirror, at_m, along, across)
         x_m, y_m = moved_m[0].tolist()
         return self.on_ground(x_m, y_m, confidence)
 
@@ -98,7 +99,7 @@ class BallSight:
         height_m: float,
         area: float,
         stated_share: float,
-        shake_px: tuple[float, float],
+        moved_px: tuple[float, float],
         noise: list[float],
     ) -> ball_percept_t:
         """Returns the percept of a ball whose distance follows from its size: one that seems small seems far away."""
@@ -107,7 +108,7 @@ class BallSight:
         range_m = max(1e-6, float(np.hypot(*at_m[0])))
         distance_m = math.hypot(range_m, below_m)
         px_rad = self.mirror.scale_px / (1.0 + below_m / distance_m)
-        (along,), (across,) = shaken(at_m, shake_px)
+        along, across = moved_px
         up_rad = (along + self.errors.ball_px * noise[0]) / px_rad
         across_m = (across + self.errors.ball_px * noise[1]) / px_rad * distance_m
         ahead_x, ahead_y = (at_m[0] / range_m).tolist()

@@ -27,7 +27,7 @@ from procs.simulation.delayed_truth import DelayedTruth
 from procs.simulation.gaps import Gaps
 from procs.simulation.line_scan import line_scan
 from procs.simulation.percept_errors import PRESETS
-from procs.simulation.sight import blurred, claimed, glimpse_of, hidden, shaken
+from procs.simulation.sight import blurred, claimed, glimpse_of, hidden, shaken, tilted
 from procs.vision.calibration import MirrorConfig, below_mirror
 
 
@@ -105,9 +105,6 @@ class PerceptsConfig(Config):
     """Pixels of the picture that the detector needs beyond a line. Fitted to rendered pictures."""
     beyond_robot_px: float = Setting(default=4.0, ge=0.0, le=50.0)
     """Pixels of the picture that the detector needs beyond the near edge of a robot. Fitted to rendered pictures."""
-    tilt_share: float = Setting(default=0.8, ge=0.0, le=2.0)
-    """Shift of what is a few metres away by a tilt of one rad, in pixels, as a part of the mirror's scale. An estimate
-    from the mirror's shape."""
     ball_phantom_m: float = Setting(default=0.5, gt=0.0, le=20.0)
     """Least distance of a ball that is not there, in metres; the largest is the ball's. An estimate."""
     robot_phantom_m: float = Setting(default=0.6, gt=0.0, le=20.0)
@@ -155,7 +152,7 @@ class Percepts(Component):
             return
         own = seen.own
         deviation_px = self._errors.shake_px + self._errors.shake_px_per_m_s * math.hypot(own.vx_m_s, own.vy_m_s)
-        forward, left = (self._tilt_px + deviation_px * self.rng.standard_normal(2)).tolist()
+        forward, left = (deviation_px * self.rng.standard_normal(2)).tolist()
         others = [(robot.x_m, robot.y_m) for robot in seen.others]
         robots_m = _seen_from(own, np.array(others).reshape(-1, 2))
         self._see_ball(own, seen.truth, robots_m, (forward, left), passed_s)
@@ -172,9 +169,8 @@ class Percepts(Component):
     def _apply_settings(self) -> None:
         self._errors = chosen(PRESETS[self.config.realism], self.config)
         self._mirror = self.config.mirror.mirror()
-        self._tilt_px = (
-            self.config.tilt_share * self._mirror.scale_px * math.radians(self._errors.tilt_sd_deg) * self._tilts
-        )
+        roll_rad, pitch_rad = (math.radians(self._errors.tilt_sd_deg) * self._tilts).tolist()
+        self._tilt_rad = roll_rad, pitch_rad
         self._stated = EXPECTED[self.config.realism]
         end_px = min(self._mirror.radius_px(self.config.reach_m), self._mirror.size_px / 2 - 1)
         beyond_px = self.config.beyond_line_px, self.config.beyond_robot_px
@@ -208,7 +204,8 @@ class Percepts(Component):
             bodies_m = robots_m if truth.ball_z_m <= robot.height_m else robots_m[:0]
             visible, aside_m = glimpse_of(at_m[0], radius_m, bodies_m, robot.radius_m)
             seen_m = at_m + aside_m / max(float(np.hypot(*at_m[0])), radius_m) * np.array(((-at_m[0, 1], at_m[0, 0]),))
-            percept = self._ball_sight.found(seen_m, truth.ball_z_m, visible, shake_px, noise)
+            (along,), (across,) = self._moved(seen_m, shake_px, truth.ball_z_m + radius_m)
+            percept = self._ball_sight.found(seen_m, truth.ball_z_m, visible, (along, across), noise)
         if phantom < -math.expm1(-errors.ball_phantoms_1_s * passed_s):
             least_m = self.config.ball_phantom_m
             range_m, angle_rad = least_m + distance * (self._ball_reach_m - least_m), direction * math.tau
@@ -232,7 +229,7 @@ class Percepts(Component):
         phantom, direction, distance = self.rng.random(3)
         most_hidden = 1 - config.least_visible
         seen = (luck >= errors.robot_missed) & (hidden(found_m, robots_m, config.robot.radius_m) < most_hidden)
-        along, across = shaken(found_m, shake_px)
+        along, across = self._moved(found_m, shake_px)
         moved_m = blurred(
             self._mirror, found_m, along + errors.robot_along_px * noise[0], across + errors.robot_across_px * noise[1]
         )[seen]
@@ -266,13 +263,18 @@ class Percepts(Component):
         luck, noise = self.rng.random((2, len(found_m))), self.rng.standard_normal((2, len(found_m)))
         found_m[luck[1] < errors.line_phantoms] *= config.line_phantom_share
         seen = (luck[0] >= errors.line_missed) & (hidden(found_m, robots_m, config.robot.radius_m) <= 0)
-        along, across = shaken(found_m, shake_px)
+        along, across = self._moved(found_m, shake_px)
         moved_m = blurred(self._mirror, found_m, along + errors.line_px * noise[0], across + errors.line_px * noise[1])
         moved_m = moved_m[seen]
         if len(moved_m) > config.most_points:
             moved_m = moved_m[np.linspace(0, len(moved_m) - 1, config.most_points).astype(int)]
         points = self.line_points.value
         points.x_m, points.y_m = moved_m.T.tolist()
+
+    def _moved(self, points_m: Floats, shake_px: tuple[float, float], height_m: float = 0.0) -> tuple[Floats, Floats]:
+        """Returns the pixels (n) along and across each ray by which shake and tilt move what points (n, 2) show."""
+        by_shake, by_tilt = shaken(points_m, shake_px), tilted(self._mirror, points_m, self._tilt_rad, height_m)
+        return by_shake[0] + by_tilt[0], by_shake[1] + by_tilt[1]
 
 
 def _seen_from(own: true_robot_t, points_m: Floats) -> Floats:

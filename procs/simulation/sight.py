@@ -92,6 +92,22 @@ def shaken(points_m: Floats, shake_px: tuple[float, float]) -> tuple[Floats, Flo
     return ahead[:, 0] * forward + ahead[:, 1] * left, ahead[:, 0] * left - ahead[:, 1] * forward
 
 
+def tilted(
+    mirror: Mirror, points_m: Floats, tilt_rad: tuple[float, float], height_m: float = 0.0
+) -> tuple[Floats, Floats]:
+    """Returns the same for a small tilt of the mirror about the robot's x and y axis, for points at a height.
+
+    What is far away moves along the ray; a turn about the ray itself hardly moves it.
+    """
+    range_m, ahead = rays(points_m)
+    roll_rad, pitch_rad = tilt_rad
+    below_m = mirror.height_m - height_m
+    cosine = below_m / np.hypot(range_m, below_m)  # of the angle from straight down
+    px_rad = mirror.scale_px / np.maximum(1.0 + cosine, 1e-3)
+    along = px_rad * (ahead[:, 0] * pitch_rad - ahead[:, 1] * roll_rad)
+    return along, -px_rad * cosine * (ahead[:, 0] * roll_rad + ahead[:, 1] * pitch_rad)
+
+
 def claimed(mirror: Mirror, x_m: float, y_m: float, along_px: float, across_px: float) -> list[list[float]]:
     """Returns the covariance (2, 2) in m² that a percept states; never quite zero."""
     least_px = 0.02

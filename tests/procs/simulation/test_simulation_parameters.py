@@ -41,7 +41,6 @@ def percepts(**settings: Any) -> list[bytes]:
         ("hidden_share", 0.5, 1.0),
         ("beyond_line_px", 2.5, 20.0),
         ("beyond_robot_px", 4.0, 40.0),
-        ("tilt_share", 0.8, 0.2),
         ("ball_phantom_m", 0.5, 2.0),
         ("robot_phantom_m", 0.6, 2.0),
         ("line_phantom_share", 0.8, 0.5),

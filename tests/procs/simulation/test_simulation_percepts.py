@@ -123,8 +123,13 @@ class Flying(Component):
         self.ground_truth.write()
 
 
-def seen_through(rendered: bool, scene: type[Component], **settings: Any) -> MemorySystem:
-    """Returns a robot that sees a scene through camera and detectors, or by percepts from the truth."""
+def seen_through(
+    rendered: bool, scene: type[Component], eyes: dict[str, Any] | None = None, seed: int = 1, **settings: Any
+) -> MemorySystem:
+    """Returns a robot that sees a scene through camera and detectors, or by percepts from the truth.
+
+    `eyes` are settings of camera or percepts, `settings` those of the scene.
+    """
     parts: dict[str, Any] = {"world/scene": scene}
     if rendered:
         parts |= {"cyan1/camera": Camera, "cyan1/omni_ball": OmniBall, "cyan1/omni_field": OmniField}
@@ -133,8 +138,12 @@ def seen_through(rendered: bool, scene: type[Component], **settings: Any) -> Mem
     owner = "camera" if rendered else "percepts"
     return MemorySystem(
         parts,
-        settings={f"cyan1/{owner}": {"latency_s": 0.0, "gaps_1_min": 0.0, "tilt_sd_deg": 0.0}, "world/scene": settings},
+        settings={
+            f"cyan1/{owner}": {"latency_s": 0.0, "gaps_1_min": 0.0, "tilt_sd_deg": 0.0, **(eyes or {})},
+            "world/scene": settings,
+        },
         channels={"world/scene": {"ground_truth": "world/ground_truth"}},
+        seed=seed,
     )
 
 
@@ -269,6 +278,29 @@ def test_ball_hidden_in_part_states_the_same_error(away_m: float) -> None:
         stated_m.append(np.mean([math.sqrt(np.trace(each.covariance_m2)) for each in percepts if each.visible]))
     drawn_m, rendered_m = stated_m
     assert drawn_m == pytest.approx(rendered_m, rel=0.15)
+
+
+@pytest.mark.parametrize("away_m", [1.0, 4.0])
+def test_tilt_moves_the_ball_as_in_pictures(away_m: float) -> None:
+    """A tilt moves what is far away along the ray, and hardly across it."""
+    errors_m = []
+    for rendered in (False, True):
+        found = []
+        for seed in range(1, 9):
+            system = seen_through(
+                rendered, Flying, {"realism": "none", "tilt_sd_deg": 0.5}, seed, away_m=away_m, height_m=0.0
+            )
+            system.tick(6)
+            scene: Any = system.runners["world/scene"].component
+            for shown, sent in zip(scene.shown, system.sent["cyan1/ball_percept"], strict=True):
+                percept = ball_percept_t.decode(sent)
+                ahead_x, ahead_y = (np.array((shown.ball_x_m, shown.ball_y_m)) - OWN[:2]) / away_m
+                x_m, y_m = place_of(percept) - OWN[:2]
+                found.append((ahead_x * x_m + ahead_y * y_m - away_m, ahead_x * y_m - ahead_y * x_m))
+        errors_m.append(np.sqrt(np.mean(np.square(found), axis=0)))
+    (drawn_along_m, drawn_across_m), (rendered_along_m, rendered_across_m) = errors_m
+    assert drawn_along_m == pytest.approx(rendered_along_m, rel=0.5)
+    assert drawn_across_m == pytest.approx(rendered_across_m, rel=0.5)
 
 
 def test_glimpse_of_a_ball_is_that_of_sampled_points() -> None:
