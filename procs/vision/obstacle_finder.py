@@ -21,6 +21,9 @@ _COVERED = 0.75  # if a larger share of the rays begins black, the camera is cov
 _BETWEEN_RAYS = 0.23  # standard deviation of a middle across the ray, as a share of the distance between two rays
 _BESIDE_RAYS = 2  # rays from one body to the next if nothing is between them
 _GAP = 1.4  # width of the gap that a ball in front of a robot makes at most, as a multiple of the robot's radius
+_APART = 0.6  # a gap this wide, as a share of the radius, divides what is too wide for one robot ...
+_APART_RAYS = 2.5  # ... if rays in it meet no robot, and ...
+_APART_WIDTH = 0.7  # ... if what is on either side is as wide as this share of a robot: a ball hides less
 _WHOLE = 0.3  # a robot counts as seen wholly if at most this share of half its width is missing
 _LOST = 0.2  # standard deviation of a middle across the ray, as a share of the hidden width
 _FEET_SAMPLES = 3  # the near edge is hidden unless carpet is visible within so many samples before it
@@ -102,20 +105,37 @@ class ObstacleFinder:
         return [_Group(*each) for each in zip(parts, right_hidden, left_hidden, strict=True)]
 
     def _robots(self, group: _Group) -> Iterator[_Group]:
-        """Divides a group that is too wide for one robot evenly."""
+        """Divides a group that is too wide for one robot at its widest gap; one without gaps evenly."""
         edges_m = group.edges_m
         if len(edges_m) < self.least_rays:
             return
-        width_rad = _turn(edges_m[0], edges_m[-1])
-        range_m = float(np.hypot(edges_m[:, 0], edges_m[:, 1]).mean())
-        expected_rad = 2 * math.asin(min(self.radius_m / (range_m + self.radius_m), 1.0))
         most = len(edges_m) // self.least_rays
-        parts = min(max(round(width_rad / expected_rad), 1), most)
+        parts = min(max(round(self._robots_wide(edges_m)), 1), most)
         if parts == 1:
             yield group
             return
+        if (first := self._begin_of_gap(edges_m)) is not None:
+            yield from self._robots(_Group(edges_m[: first + 1], group.right_hidden))
+            yield from self._robots(_Group(edges_m[first + 1 :], left_hidden=group.left_hidden))
+            return
         for number, part in enumerate(np.array_split(edges_m, parts)):
             yield _Group(part, number == 0 and group.right_hidden, number == parts - 1 and group.left_hidden)
+
+    def _robots_wide(self, edges_m: Floats) -> float:
+        """Returns how wide the points (n, 2) of a group are, as a multiple of a robot at their distance."""
+        range_m = float(np.hypot(edges_m[:, 0], edges_m[:, 1]).mean())
+        expected_rad = 2 * math.asin(min(self.radius_m / (range_m + self.radius_m), 1.0))
+        return _turn(edges_m[0], edges_m[-1]) / expected_rad
+
+    def _begin_of_gap(self, edges_m: Floats) -> int | None:
+        """Returns the point (of n, 2) before the widest gap between robots; None without a gap."""
+        gaps_m = np.hypot(*np.diff(edges_m, axis=0).T)
+        widest = int(gaps_m.argmax())
+        missed_rad = _turn(edges_m[widest], edges_m[widest + 1])
+        if gaps_m[widest] <= _APART * self.radius_m or missed_rad <= _APART_RAYS * math.tau / len(self.star.ground_m):
+            return None
+        sides = edges_m[: widest + 1], edges_m[widest + 1 :]
+        return widest if all(self._robots_wide(side) >= _APART_WIDTH for side in sides) else None
 
     def _obstacle(self, group: _Group) -> Obstacle:
         """Returns the robot of a group; the usual width places the middle of one that is hidden on one side."""

@@ -224,6 +224,26 @@ def test_two_robots_side_by_side_are_two_obstacles() -> None:
     assert np.allclose(places, [(-0.26, 2.0), (0.26, 2.0)], atol=0.08)
 
 
+@pytest.mark.parametrize("away_m", [1.0, 2.0, 3.0, 4.0])
+def test_robots_a_narrow_gap_apart_are_two_obstacles(away_m: float) -> None:
+    rng, counts = np.random.default_rng(3), []
+    for apart_m in (0.7, 0.75, 0.8, 0.85, 0.9):
+        for bearing_rad in np.linspace(0.0, 0.035, 4):  # the angle between two rays
+            aside = apart_m / 2 * np.array((-math.sin(bearing_rad), math.cos(bearing_rad)))
+            middle = away_m * np.array((math.cos(bearing_rad), math.sin(bearing_rad))) + (-3.0, 2.0)
+            others = [(*(middle + side * aside), CYAN) for side in (-1.0, 1.0)]
+            counts.append(len(obstacles(picture(Scene(Pose(-3.0, 2.0, 0.0), others, None), rng))))
+    assert counts.count(2) >= len(counts) - 1
+
+
+def test_ball_before_one_of_two_touching_robots_adds_none() -> None:
+    """It hides the inner or the outer side of one, or its middle."""
+    robots = [(-1.0, 2.26, CYAN), (-1.0, 1.74, MAGENTA)]
+    for y_m in np.linspace(2.1, 2.5, 9):
+        ball_m = (-1.0 - math.sqrt(max(0.33**2 - (y_m - 2.26) ** 2, 0.0)), y_m, 0.11)
+        assert len(obstacles(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), robots, ball_m)))) <= 2
+
+
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 @pytest.mark.parametrize("bearing_rad", [0.3, math.pi])  # the rays begin and end at 0
 def test_robot_half_hidden_by_another_is_not_drawn_aside(side: float, bearing_rad: float) -> None:
