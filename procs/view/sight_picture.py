@@ -14,8 +14,9 @@ from typing import TypeVar
 import cv2
 import numpy as np
 
-from fwk.program import BAD_INPUT, complain
+from fwk.program import BAD_INPUT, FAILED, complain
 from fwk.testing import MemorySystem, PlanError, launch_plan, settings_in, system_of
+from fwk.testing.campaign import failure_of
 from lcmtypes.core import picture_t
 from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t
 from procs.model.algebra import Floats
@@ -112,10 +113,10 @@ def _included(launch: str) -> str:
     return next((str(place.absolute()) for place in places if place.is_file()), launch)
 
 
-def _refused(text: str) -> SystemExit:
-    """Says what is wrong with the input; returns the end of the program."""
+def _refused(text: str, code: int = BAD_INPUT) -> SystemExit:
+    """Says what is wrong; returns the end of the program, with an exit code."""
     complain(text)
-    return SystemExit(BAD_INPUT)
+    return SystemExit(code)
 
 
 def _time_s(text: str) -> float:
@@ -157,9 +158,12 @@ def main() -> None:
             raise _refused(f"{asked.launch}: no {_DETECTOR} of {asked.robot}; robots with one: {there}") from error
         except PlanError as error:
             raise _refused(str(error)) from error
-        system = system_of(str(file), seed=asked.seed)
-        while system.now_us < asked.time * US_PER_S:
-            system.tick()
+        try:
+            system = system_of(str(file), seed=asked.seed)
+            while system.now_us < asked.time * US_PER_S:
+                system.tick()
+        except Exception as error:  # of a component, such as a camera without its pictures
+            raise _refused(f"{asked.launch}: {failure_of(error)}", FAILED) from error
         mirror = MirrorConfig(**settings["mirror"])
         picture = sight_in(system, asked.robot, mirror, settings["ball"]["radius_m"])
     if picture is None:

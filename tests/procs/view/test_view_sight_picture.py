@@ -154,3 +154,17 @@ def test_launch_file_with_pictures_of_its_own_is_taken(tmp_path: Path, monkeypat
     own = "components: {world/pictures: {use: procs.view.pictures, config: {longest_px: 100}}}"
     picture = sight_of(f"include: soccer-1v1.yaml\nname: mine\n{own}\n", tmp_path, monkeypatch)
     assert (picture == LINE).all(axis=2).any()
+
+
+def test_failure_of_a_component_is_an_error_in_a_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = ["sight_picture", "sight.png", "--launch", "vision.yaml", "--robot", "cyan1", "--time", "0.1"]
+    monkeypatch.setattr("sys.argv", words)
+    with pytest.raises(SystemExit) as raised:
+        sight_picture.main()
+    assert raised.value.code == 1
+    said = capsys.readouterr().err
+    assert said.startswith("error: vision.yaml: cyan1/camera: SourceError: 'pictures': No such file or directory; ")
+    assert said.count("\n") == 1
