@@ -11,7 +11,7 @@ from procs.evaluation.claims import claims
 from procs.evaluation.conduct import conducted
 from procs.evaluation.delays import delays
 from procs.evaluation.innovations import innovations
-from procs.evaluation.piece import Piece, piece_of
+from procs.evaluation.piece import TRUTH, Piece, piece_of
 from procs.evaluation.possession import possession
 from procs.evaluation.report_files import write_report
 from procs.evaluation.results import flaw_in, samples_in
@@ -29,9 +29,11 @@ def measured(
     """Plays one piece of `time_s`, with settings that are overridden, and returns the samples of all measures.
 
     Raises:
-        ValueError: the piece would have no tick.
+        ValueError: the piece would have no tick, or there is no truth to measure it by.
     """
     plan = launch_plan(file, tuple(sets))
+    if not any(channel.name == TRUTH for channel in plan.channels):
+        raise ValueError(f"no component writes {TRUTH}, which is what a match is measured by; include msl-field.yaml")
     period_s = plan.period_us / 1e6
     ticks = round(time_s / period_s)
     if not ticks:

@@ -25,6 +25,8 @@ from lcmtypes.soccer import (
 from procs.model.field import Field, field_of
 from procs.model.robot import ROBOT, RobotModel, team_in, team_of
 
+TRUTH = "world/ground_truth"
+"""Channel of the truth, without which nothing is measured."""
 BELIEFS: dict[str, Any] = {
     "world_model": world_model_t,
     "team_message": team_message_t,
@@ -100,7 +102,7 @@ class Piece:
 def piece_of(sent: Mapping[str, Sequence[bytes]], period_s: float, model: RobotModel = ROBOT) -> Piece:
     """Sorts the messages of a match by tick; `sent` holds the encoded messages of each channel."""
     piece = Piece(period_s, model=model)
-    piece.truth = {truth.header.tick: truth for truth in map(ground_truth_t.decode, sent["world/ground_truth"])}
+    piece.truth = {truth.header.tick: truth for truth in map(ground_truth_t.decode, sent[TRUTH])}
     piece.game = {game.header.tick: game for game in map(game_state_t.decode, sent.get("world/game_state", ()))}
     reports = [match_events_t.decode(data) for data in sent.get("world/match_events", ())]
     piece.events = {report.header.tick: report.events for report in reports}

@@ -36,6 +36,15 @@ def test_piece_without_a_tick_fails() -> None:
         measured("soccer-truth.yaml", 0.01, 1)
 
 
+def test_piece_without_a_simulator_says_what_is_missing(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text(
+        "name: mine\ncomponents: {cyan1/camera: {use: procs.drivers.camera_driver, config: {source: pictures}}}\n"
+    )
+    with pytest.raises(ValueError, match=r"no component writes world/ground_truth, .* include msl-field\.yaml"):
+        measured(str(file), 1.0, 1)
+
+
 def test_report_without_matplotlib_names_the_line_to_type(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
     text = report([{each.name: [] for each in MEASURES}], tmp_path)
