@@ -18,13 +18,15 @@ Report = Callable[[Path, str, str], None]
 """Takes a mistake: path of the value, place, text."""
 
 _KINDS = {
-    **dict.fromkeys(("list_type", "tuple_type", "set_type", "frozen_set_type"), "it should be a list such as [1, 2]"),
     **dict.fromkeys(
         ("dict_type", "model_type", "model_attributes_type", "dataclass_type"),
         "it should be a mapping with keys such as 'name: value'",
     ),
+    **dict.fromkeys(("bool_type", "bool_parsing"), "it should be true or false"),
 }
 """Corrections in the words of YAML, by pydantic's kind of mistake."""
+_LISTS = ("list_type", "tuple_type", "set_type", "frozen_set_type")
+_NUMBERS, _TEXTS = [1, 2], ["a", "b"]
 _UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
 
 
@@ -118,9 +120,29 @@ def _text(model: type[BaseModel], node: Node, details: ErrorDetails, what: str) 
     path = _path(node, location)
     if not path:
         return f"the default of '{_dotted(location)}' does not fit: {message}" if location else message
+    if kind in _LISTS:
+        message = f"it should be a list such as {_list_instead(model, node, path, location)}"
     if node.at(*path).value is None:
         return f"'{_dotted(path)}' is empty; {message}"
     return f"'{_dotted(path)}' is {_short(node.at(*path).plain())}; {message}"
+
+
+def _list_instead(model: type[BaseModel], node: Node, path: Path, location: Path) -> str:
+    """Returns a list that fits in the place of another value: that with this value alone, or one of a usual kind."""
+    values = node.plain()
+    within = values
+    for key in path[:-1]:
+        within = within[key]
+    given = within[path[-1]]
+    for candidate in ([given], _NUMBERS, _TEXTS):
+        within[path[-1]] = candidate
+        try:
+            model.model_validate(values)
+        except ValidationError as error:
+            if any(found["loc"][: len(location)] == location for found in error.errors(include_url=False)):
+                continue
+        return _short(candidate)
+    return _short([given] if isinstance(given, dict) else _NUMBERS)
 
 
 def _mixed_up(made: Any, node: Node, path: Path) -> list[tuple[Path, str]]:

@@ -38,19 +38,31 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
     Broken(
         """
         it.yaml:4: it/a: 'colour' is 5; it should be a list such as [1, 2]
-        it.yaml:5: it/a: 'names' is 'x'; it should be a list such as [1, 2]
+        it.yaml:5: it/a: 'names' is 'x'; it should be a list such as ['x']
+        it.yaml:6: it/a: 'others' is 5; it should be a list such as ['a', 'b']
+        it.yaml:7: it/a: 'words' is empty; it should be a list such as ['a', 'b']
+        it.yaml:8: it/a: 'weights' is 2; it should be a list such as [2]
+        it.yaml:9: it/a: 'seen' is 'maybe'; it should be true or false
         """,
         """
         components:
           it/a:
             use: strange:Seer
             config: {colour: 5,
-              names: x}
+              names: x,
+              others: 5,
+              words: ,
+              weights: 2,
+              seen: maybe}
         --- strange.py
         from fwk import Component, Config
         class Sight(Config):
             colour: tuple[int, int] = (1, 2)
             names: list[str] = []
+            others: set[str] = set()
+            words: tuple[str, ...] = ()
+            weights: list[float] = []
+            seen: bool = True
         class Seer(Component):
             stage = "think"
             config: Sight
