@@ -28,7 +28,6 @@ def conducted(piece: Piece) -> Samples:
     hits_m_s = [
         event.speed_m_s for events in piece.events.values() for event in events if event.kind == match_event_t.COLLISION
     ]
-    goals = sum(event.kind == match_event_t.GOAL for events in piece.events.values() for event in events)
     distances, halves = _restarts(piece)
     return {
         "collisions above 1 m/s": np.array([(sum(hit > _LIGHT_M_S for hit in hits_m_s), piece.minutes)]),
@@ -37,7 +36,6 @@ def conducted(piece: Piece) -> Samples:
         "half violated at kick-offs": np.array(halves, np.float64),
         "restarts taken within 7 s": np.array(_taken(piece), np.float64),
         "passes controlled by the receiver": np.array(_passes(piece), np.float64),
-        "goals": np.array([(goals, piece.minutes)]),
     }
 
 

@@ -20,6 +20,7 @@ def possession(piece: Piece) -> Samples:
     scores = (last.score_cyan, last.score_magenta) if last else (0, 0)
     return {
         "shots": np.array([(len(_shots(piece)), piece.minutes)]),
+        "goals": np.array([(sum(scores), piece.minutes)]),
         "goals of cyan": np.array([(scores[0], piece.minutes)]),
         "goals of magenta": np.array([(scores[1], piece.minutes)]),
         "goals of cyan less those of magenta": np.array([(scores[0] - scores[1], piece.minutes)]),

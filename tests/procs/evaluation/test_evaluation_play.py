@@ -153,3 +153,16 @@ def _stopped() -> game_state_t:
     game = game_state_t()
     game.state, game.stopped = game_state_t.THROW_IN, True
     return game
+
+
+@pytest.mark.parametrize(("cyan", "magenta"), [(0, 0), (2, 1)])
+def test_goals_are_those_of_both_teams_together(cyan: int, magenta: int) -> None:
+    """A ball in the goal that the referee does not count is none."""
+    made = piece([robot("cyan1", 0.0, 0.0)], ticks=40)
+    for tick in made.truth:
+        made.game[tick] = playing()
+    made.game[max(made.game)].score_cyan, made.game[max(made.game)].score_magenta = cyan, magenta
+    made.events = {FIRST: [event(match_event_t.GOAL, "cyan1")]}
+    found = conducted(made) | possession(made)
+    assert found["goals"].tolist() == [[cyan + magenta, made.minutes]]
+    assert found["goals"][0, 0] == found["goals of cyan"][0, 0] + found["goals of magenta"][0, 0]
