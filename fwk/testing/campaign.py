@@ -132,8 +132,7 @@ class Campaign:
         elif (flaw := _flaw_of(old, _flaw_in_note)) and old != text.encode():
             cure = "remove it if the results beside it are of this launch file and its settings"
             raise FolderError(f"{note} is damaged: {flaw}; {cure}, or choose another folder")
-        elif json.loads(old) != json.loads(text) and not self._began_anew(note, text):
-            differ = _differing(json.loads(old), json.loads(text))
+        elif (differ := _differing(json.loads(old), json.loads(text))) and not self._began_anew(note, text):
             raise FolderError(f"{folder} holds another campaign: {differ}; choose another folder")
 
     def _began_anew(self, note: Path, text: str) -> bool:
@@ -250,12 +249,22 @@ def _flaw_in_note(value: Any) -> str:
 
 
 def _differing(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:
-    """Returns how another campaign differs from this one: `time_s is 60.0 there, 30.0 here`."""
+    """Returns how another campaign differs from this one: `time_s is 60.0 there, 30.0 here`; empty if it does not.
+
+    The same settings that lead to the same plan are no difference, in whatever order they were typed.
+    """
     keys = [key for key in {**old, **new} if old.get(key) != new.get(key)]
+    if not keys or (keys == ["sets"] and _sorted(old.get("sets")) == _sorted(new.get("sets"))):
+        return ""
     shown = [key for key in keys if key != "plan"]  # a digest, which settings change, too
     if not shown:
         return "its launch file had other components or settings"
     return ", ".join(f"{key} is {json.dumps(old.get(key))} there, {json.dumps(new.get(key))} here" for key in shown)
+
+
+def _sorted(values: Any) -> list[str]:
+    """Returns the values of a list in an order of their own; of anything else itself."""
+    return sorted(map(str, values)) if isinstance(values, list) else [str(values)]
 
 
 def _outcome(future: Future[Any]) -> tuple[str, str]:

@@ -117,6 +117,14 @@ def test_overridden_settings_reach_each_run(launch: Path) -> None:
     assert (code, 'another campaign: sets is ["period_s=0.1"] there, null here' in said) == (2, True)
 
 
+def test_order_of_overridden_settings_makes_no_difference(launch: Path) -> None:
+    words, (one, two) = (str(launch), "--jobs", "1", "--seeds"), ("period_s=0.1", "stage_time_s=1")
+    assert evaluated(*words, "1", "--set", one, "--set", two)[0] == 0
+    assert evaluated(*words, "1..2", "--set", two, "--set", one)[0] == 0
+    code, _, said = evaluated(*words, "1..2", "--set", one)
+    assert (code, "another campaign: sets is" in said) == (2, True)
+
+
 def test_mistake_in_an_overridden_setting_is_named(launch: Path) -> None:
     code, _, said = evaluated(str(launch), "--set", "it/idle.speed=1")
     assert (code, "it/idle" in said, "speed" in said) == (2, True, True)
