@@ -101,7 +101,10 @@ def _main(arguments: Sequence[str]) -> int:
         return 2
     try:
         changed = redraw(Path(arguments[0]))
-    except (OSError, ValueError) as error:
+    except OSError as error:
+        print(f"{arguments[0]}: {error.strerror}; name a page of text, such as docs/soccer.md", file=sys.stderr)
+        return 2
+    except ValueError as error:
         print(error, file=sys.stderr)
         return 2
     print(f"{arguments[0]}: {'drawn anew' if changed else 'up to date'}")

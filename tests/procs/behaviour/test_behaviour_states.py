@@ -2,6 +2,8 @@
 
 import itertools
 import re
+import subprocess
+import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -211,6 +213,13 @@ def test_page_that_is_not_text_is_refused(tmp_path: Path) -> None:
     picture.write_bytes(b"\x89PNG")
     with pytest.raises(ValueError, match=r"field\.png is not a page: .*; it should be UTF-8 text"):
         drawings.redraw(picture)
+
+
+def test_page_that_does_not_exist_is_named(tmp_path: Path) -> None:
+    words = [sys.executable, "-m", "procs.behaviour.skills.drawings", str(tmp_path / "nope.md")]
+    ended = subprocess.run(words, capture_output=True, text=True, check=False, timeout=60)
+    mistake = "nope.md: No such file or directory; name a page of text, such as docs/soccer.md\n"
+    assert (ended.returncode, ended.stderr) == (2, f"{tmp_path}/{mistake}")
 
 
 def test_drawing_names_states_as_mermaid_can_read_them() -> None:
