@@ -1,6 +1,7 @@
 """Forms made from message types, to send messages and requests."""
 
 import json
+from collections.abc import Awaitable
 from typing import Any
 
 from nicegui import ui
@@ -12,6 +13,7 @@ from fwk.web.layout import Frame
 
 _NUMBERS = {"int8_t": int, "int16_t": int, "int32_t": int, "int64_t": int, "byte": int, "double": float, "float": float}
 _OWN = ("header", "command")
+_ANSWERS_SHOWN = 5
 
 
 class FieldError(RefusedError):
@@ -61,7 +63,33 @@ def value_of(name: str, type_name: str, plain: bool, typed: Any) -> Any:
     return value
 
 
-async def send_form(frame: Frame, channel: str) -> None:
+class Answers:
+    """Lines that say what became of the newest messages sent with forms; they stay, also beside another form."""
+
+    def __init__(self) -> None:
+        self._lines = ui.column().classes("w-full gap-1").props('role=status aria-label="answers" data-name=answers')
+
+    async def show(self, name: str, answer: Awaitable[str]) -> None:
+        """Adds a line on top, which waits for the answer and then shows it, or the reason of a refusal.
+
+        Args:
+            name: the service or channel.
+            answer: what to say about it once it is known.
+        """
+        with self._lines:
+            line = ui.label(f"{name}: waits for the answer").classes("fwk-answer")
+        line.move(target_index=0)
+        for old in self._lines.default_slot.children[_ANSWERS_SHOWN:]:
+            old.delete()
+        try:
+            text, look = f"{name}: {await answer}", "s-running"
+        except ControlError as error:
+            text, look = str(error), "s-failed"
+        line.set_text(text)
+        line.classes(look)
+
+
+async def send_form(frame: Frame, channel: str, answers: Answers) -> None:
     """Makes the form of a channel that may be written from outside, or of a service; otherwise nothing."""
     link, access = frame.link, frame.access
     if not frame.may_steer:
@@ -78,21 +106,17 @@ async def send_form(frame: Frame, channel: str) -> None:
     examples = examples_of(kind)
     made = {name: (_input(name, *how, examples.get(name, "")), *how) for name, how in fields_of(kind).items()}
 
-    async def send() -> None:
-        try:
-            values = {name: value_of(name, how, plain, field.value) for name, (field, how, plain) in made.items()}
-        except FieldError as error:
-            ui.notify(str(error), type="negative")
-            return
+    async def answer() -> str:
+        values = {name: value_of(name, how, plain, field.value) for name, (field, how, plain) in made.items()}
         members = {name: value for name, value in values.items() if value is not None}
         if service:
-            answer = await frame.do(access.call(service, members))
-            if answer:
-                ui.notify(f"{service}: {answer['state']}", type="positive")
-        else:
-            await frame.do(access.send(channel, members), f"{channel}: sent")
+            return str((await access.call(service, members))["state"])
+        await access.send(channel, members)
+        return "sent"
 
-    ui.button("send", icon="send", on_click=send).props("no-caps").props("data-name=send")
+    ui.button("send", icon="send", on_click=lambda: answers.show(service or channel, answer())).props(
+        "no-caps data-name=send"
+    )
 
 
 def _input(name: str, type_name: str, plain: bool, text: str) -> Any:

@@ -13,7 +13,7 @@ components:
   a/probe: {{ use: "garden_parts:Probe" }}
   b/later: {{ use: "garden_parts:Watcher", start: false }}
 {crowd}
-outside: {{ garden/wish: garden.wish_t, garden/stick: robot.joystick_t }}
+outside: {{ garden/wish: garden.wish_t, garden/hint: garden.wish_t, garden/stick: robot.joystick_t }}
 hosts: {{ crowd: [{names}] }}
 public_url: "{public_url}"
 """

@@ -10,7 +10,7 @@ from fwk.control.client import ControlError
 from fwk.web.instruments import CAMERA
 from fwk.web.layout import Frame, body
 from fwk.web.rates import Rates
-from fwk.web.sending import send_form
+from fwk.web.sending import Answers, send_form
 from fwk.web.words import age, rows_of, seconds
 
 _COLUMNS = {
@@ -47,6 +47,8 @@ def build(frame: Frame) -> None:
             )
         with ui.column().classes("fwk-half"):
             title = ui.label("choose a channel").classes("text-subtitle1").props("data-name=channel")
+            form = ui.column().classes("w-full")  # live messages resize only what is below it: no click misses it
+            answers = Answers()
             about = ui.label("").classes("opacity-70")
             image = ui.column().classes("w-full")
             fields = ui.table(
@@ -58,7 +60,6 @@ def build(frame: Frame) -> None:
                 row_key="field",
             )
             fields.props("dense flat bordered").classes("fwk-table").props("data-name=fields")
-            form = ui.column().classes("w-full")
 
     async def refresh_list() -> None:
         rows = await link.channels()
@@ -77,7 +78,6 @@ def build(frame: Frame) -> None:
         except ControlError as error:
             about.set_text(str(error))
             return
-        title.set_text(answer["channel"])
         if answer["value"] is None:
             about.set_text(f"{answer['type']}: never written")
             fields.rows = []
@@ -101,13 +101,14 @@ def build(frame: Frame) -> None:
 
     async def show_chosen(channel: str) -> None:
         kind = (await link.types([channel])).get(channel)
+        title.set_text(channel)
         image.clear()
         if kind and CAMERA.members <= {*kind.__slots__}:
             with image:
                 frame.canvas(channel, _IMAGE_S, device=channel).classes("fwk-device")
         form.clear()
         with form:
-            await send_form(frame, channel)
+            await send_form(frame, channel, answers)
         await refresh_fields()
 
     table.on("row-click", lambda event: choose(event.args[1]["channel"]), [[], ["channel"], None])

@@ -111,8 +111,34 @@ def test_blackboard_shows_live_fields_and_sends_forms(garden: Garden) -> None:
     expect(text).to_have_value("rain")
     page.get_by_role("button", name="send").click()
     expect(page.get_by_text("garden/wish: sent")).to_be_visible()
+    answers = ("garden/wish: sent", "a/visit: done", "a/visit: rejected: ", "x_m: 'far' is not ")
+    expect(page.locator("[data-name=answers] > div")).to_contain_text(answers)  # they stay, the newest on top
     garden.run.until("visits (1.5, 0.0), by hand, [1.0, 2.5]")
     garden.run.until("wish 0: rain")
+
+
+def test_a_form_stays_in_place_while_messages_come(garden: Garden) -> None:
+    page, other = (garden.open("/board?run=garden&channel=garden/hint") for _ in range(2))
+    other.get_by_label("text (string)").fill("sun")
+    page.get_by_label("text (string)").fill("shade")
+    expect(page.get_by_text("garden.wish_t: never written")).to_be_visible()
+    page.get_by_role("button", name="send").hover()
+    page.mouse.down()
+    other.get_by_role("button", name="send").click()
+    expect(page.locator("[data-name=fields]")).to_contain_text("sun")  # the first message: the fields take more room
+    page.mouse.up()
+    expect(page.get_by_text("garden/hint: sent")).to_be_visible()
+    expect(page.locator("[data-name=fields]")).to_contain_text("shade")
+
+
+def test_a_form_shows_the_newest_answers(garden: Garden) -> None:
+    page = garden.open("/board?run=garden&channel=garden/wish")
+    for _ in range(5):
+        page.get_by_role("button", name="send").click()
+    page.get_by_label("number (int32_t)").fill("many")
+    page.get_by_role("button", name="send").click()
+    mistake = "number: 'many' is not a number of type int32_t"
+    expect(page.locator("[data-name=answers] > div")).to_have_text([mistake, *["garden/wish: sent"] * 4])
 
 
 def test_devices_have_instruments_and_a_pad_drives(garden: Garden) -> None:
