@@ -216,10 +216,13 @@ def _inputs(plan: Plan) -> dict[str, str]:
     """Returns the hashes of the files that the module of the evaluation names in `INPUTS`.
 
     Raises:
-        Exit: one of them cannot be read.
+        Exit: one of them cannot be read, or is a pipe or another place that may never end.
     """
     name = plan.evaluation.partition(":")[0]
     files: Sequence[Path | str] = getattr(sys.modules.get(name), "INPUTS", ())
+    for file in files:
+        if Path(file).exists() and not Path(file).is_file():
+            raise _bad_input(f"{file}, one of the INPUTS of {name}, is no ordinary file")
     try:
         return {str(file): hashlib.sha256(Path(file).read_bytes()).hexdigest() for file in files}
     except OSError as error:

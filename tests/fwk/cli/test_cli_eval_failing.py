@@ -69,6 +69,12 @@ def report(results, folder):
             1,
             r"error: own_flaw\.flaw_in failed: KeyError: 'x' \(.*/own_flaw\.py:6\)\n",
         ),
+        (
+            "own_pipe",
+            "import os; INPUTS = [__file__.replace('own_pipe.py', 'pipe')]; os.mkfifo(*INPUTS)",
+            2,
+            "error: .*/pipe, one of the INPUTS of own_pipe, is no ordinary file\n",
+        ),
         ("own_path", "INPUTS = ['gone.csv']", 2, "error: gone.csv, one of the INPUTS of own_path: No such file .*\n"),
     ],
 )
