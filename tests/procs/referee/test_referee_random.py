@@ -133,12 +133,12 @@ def stand(whistle: Whistle, mirrored: bool) -> tuple[Any, ...]:
     return whistle.state, team(whistle.team), whistle.stopped, whistle.half, place, score, cards, calls
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 def test_random_match_is_the_same_with_exchanged_teams(seed: int) -> None:
     rules = TIMES | {"fouls_per_card": 1 + seed % 3, "decide": True}
     ours, theirs = Whistle(Rules(**rules)), Whistle(Rules(**rules, first_kick_off="magenta"))
     chance, states, quiet_s = Chance(seed, ours), set(), 0.0
-    for tick in range(4000):
+    for tick in range(3000):
         sight = chance.sight()
         if tick % 50 == 25:  # the referee is restarted
             ours = chance.whistle = restarted(ours)
@@ -157,7 +157,7 @@ def test_random_match_is_the_same_with_exchanged_teams(seed: int) -> None:
 
 
 @pytest.mark.parametrize("automatic", [True, False])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_random_commands_do_the_same_for_both_teams(seed: int, automatic: bool) -> None:
     rules = TIMES | {"decide": True, "automatic": automatic, "half_s": 60.0}
     ours, theirs = Whistle(Rules(**rules)), Whistle(Rules(**rules, first_kick_off="magenta"))
