@@ -4,7 +4,7 @@ import math
 
 from procs.model.field import Point
 from procs.model.game_states import State
-from procs.model.teams import Ends, Team, team_number
+from procs.model.teams import Ends, Team
 from procs.referee.advantage import Advantage
 from procs.referee.fouls.book import RuleBook, grave_fouls
 from procs.referee.fouls.foul import Foul, Scene
@@ -46,7 +46,7 @@ class Stretch:
     @property
     def taken(self) -> bool:
         """Whether a robot of the team that takes the set piece has touched the ball."""
-        return any(team_number(robot) is self.team for robot in self.touches.robots)
+        return self.touches.of_team(self.team)
 
     @property
     def penalty_rolls(self) -> bool:

@@ -58,6 +58,10 @@ class Touches:
             self.last, self.place, self.bystander = robot, place, ""
         self.bystander = sight.bystander or self.bystander
 
+    def of_team(self, team: Team) -> bool:
+        """Returns whether a robot of a team has touched the ball, also one that has left the field since."""
+        return any(team_number(robot) is team for robot in self.robots)
+
     def watch_rivals(self, duration_s: float, sight: Sight, carrier: str) -> None:
         """Notes whether rivals of the taker have had the ball; `carrier` is the robot that carries it now."""
         kickers = {event.robot for event in sight.events if event.kind is Kind.KICK}

@@ -4,8 +4,6 @@ A stretch of the game is stopped (robots take position), then started (a set pie
 a ball out of the field, a foul or a deadlock interrupts it.
 """
 
-import math
-
 from procs.model.events import Event, Kind
 from procs.model.field import Point
 from procs.model.game_states import State
@@ -263,8 +261,8 @@ class Whistle(Match):
     def _repeat_after_bystander(self, scene: Scene) -> bool:
         """Has the set piece repeated, twice at most, if a robot that takes no part moved its ball before any other."""
         touches = scene.touches
-        moved = math.dist(scene.sight.ball, touches.place) >= self.rules.moved_m
-        if self.state is State.PLAY or touches.robots or not touches.bystander or not moved:
+        untouched = self.state is not State.PLAY and not touches.robots
+        if not (untouched and touches.bystander and self._stretch.rolled(scene.sight.ball, self.rules)):
             return False
         return self._repeat_for(Reason.EARLY_TOUCH, touches.bystander)
 

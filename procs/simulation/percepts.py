@@ -27,7 +27,7 @@ from procs.simulation.delayed_truth import DelayedTruth
 from procs.simulation.gaps import Gaps
 from procs.simulation.line_scan import line_scan
 from procs.simulation.percept_errors import PRESETS
-from procs.simulation.sight import blurred, claimed, glimpse_of, hidden, shaken, tilted
+from procs.simulation.sight import blurred, claimed, displaced, glimpse_of, hidden
 from procs.vision.calibration import MirrorConfig, below_mirror
 
 
@@ -273,8 +273,7 @@ class Percepts(Component):
 
     def _moved(self, points_m: Floats, shake_px: tuple[float, float], height_m: float = 0.0) -> tuple[Floats, Floats]:
         """Returns the pixels (n) along and across each ray by which shake and tilt move what points (n, 2) show."""
-        by_shake, by_tilt = shaken(points_m, shake_px), tilted(self._mirror, points_m, self._tilt_rad, height_m)
-        return by_shake[0] + by_tilt[0], by_shake[1] + by_tilt[1]
+        return displaced(self._mirror, points_m, shake_px, self._tilt_rad, height_m)
 
 
 def _seen_from(own: true_robot_t, points_m: Floats) -> Floats:

@@ -85,27 +85,28 @@ def blurred(mirror: Mirror, points_m: Floats, along_px: Floats, across_px: Float
     return np.asarray(points_m + ahead * (along_px * along_m)[:, None] + across * (across_px * across_m)[:, None])
 
 
-def shaken(points_m: Floats, shake_px: tuple[float, float]) -> tuple[Floats, Floats]:
-    """Returns the pixels (n) along and across each ray by which a shake (forward, left) moves what points show."""
-    _, ahead = rays(points_m)
-    forward, left = shake_px
-    return ahead[:, 0] * forward + ahead[:, 1] * left, ahead[:, 0] * left - ahead[:, 1] * forward
-
-
-def tilted(
-    mirror: Mirror, points_m: Floats, tilt_rad: tuple[float, float], height_m: float = 0.0
+def displaced(
+    mirror: Mirror,
+    points_m: Floats,
+    shake_px: tuple[float, float],
+    tilt_rad: tuple[float, float],
+    height_m: float = 0.0,
 ) -> tuple[Floats, Floats]:
-    """Returns the same for a small tilt of the mirror about the robot's x and y axis, for points at a height.
+    """Returns the pixels (n) along and across each ray by which a shake and a small tilt move what points (n, 2) show.
 
-    What is far away moves along the ray; a turn about the ray itself hardly moves it.
+    A shake moves everything alike, forward and left. A tilt of the mirror about the robot's x and y axis moves what is
+    far away along the ray; a turn about the ray itself hardly moves it. The points are at a height.
     """
     range_m, ahead = rays(points_m)
+    forward, left = shake_px
     roll_rad, pitch_rad = tilt_rad
     below_m = mirror.height_m - height_m
     cosine = below_m / np.hypot(range_m, below_m)  # of the angle from straight down
     px_rad = mirror.scale_px / np.maximum(1.0 + cosine, 1e-3)
-    along = px_rad * (ahead[:, 0] * pitch_rad - ahead[:, 1] * roll_rad)
-    return along, -px_rad * cosine * (ahead[:, 0] * roll_rad + ahead[:, 1] * pitch_rad)
+    ahead_x, ahead_y = ahead.T
+    along = (ahead_x * forward + ahead_y * left) + px_rad * (ahead_x * pitch_rad - ahead_y * roll_rad)
+    across = (ahead_x * left - ahead_y * forward) - px_rad * cosine * (ahead_x * roll_rad + ahead_y * pitch_rad)
+    return along, across
 
 
 def claimed(mirror: Mirror, x_m: float, y_m: float, along_px: float, across_px: float) -> list[list[float]]:

@@ -20,21 +20,24 @@ class Areas:
 
     def watch(self, scene: Scene) -> list[Foul]:
         """Returns the fouls of robots that have been where they may not for too long, one of each team at most."""
+        places = {name: _on_field(scene, place) for name, place in sorted(scene.sight.robots.items())}
+        field = scene.rules.field
         keepers = {side: next(iter(scene.sight.team(scene.ends.defender(side))), "") for side in SIDES}
         inside = {
             name: side
-            for name in sorted(scene.sight.robots)
+            for name, place in places.items()
             for side in SIDES
-            if name != keepers[side] and self._in_penalty_area(scene, name, side)
+            if name != keepers[side] and field.in_penalty_area(*place, side)
         }
         self._inside_s = {name: self._inside_s.get(name, 0.0) + scene.duration_s for name in inside}
-        forbidden = [name for name in inside if self._is_second(name, inside) or self._in_goal_area(scene, name)]
+        in_goal_area = {name for name in inside if any(field.in_goal_area(*places[name], side) for side in SIDES)}
+        forbidden = [name for name in inside if name in in_goal_area or self._is_second(name, inside)]
         self._forbidden_s = {name: self._forbidden_s.get(name, 0.0) + scene.duration_s for name in forbidden}
         found: dict[Team, Foul] = {}
         for name in [name for name, time_s in self._forbidden_s.items() if time_s > scene.rules.grace_s]:
             if team_number(name) not in found:
                 del self._forbidden_s[name]
-                reason = Reason.IN_GOAL_AREA if self._in_goal_area(scene, name) else Reason.TOO_MANY_IN_AREA
+                reason = Reason.IN_GOAL_AREA if name in in_goal_area else Reason.TOO_MANY_IN_AREA
                 found[team_number(name)] = Foul(name, reason, scene.sight.robots[name])
         for name in [name for name, time_s in self._inside_s.items() if time_s > scene.rules.area_s]:
             if team_number(name) not in found:
@@ -48,18 +51,10 @@ class Areas:
         mates = [each for each in inside if inside[each] == inside[name] and team_number(each) is team]
         return any((-self._inside_s[each], each) < entered for each in mates)
 
-    @staticmethod
-    def _in_penalty_area(scene: Scene, name: str, side: float) -> bool:
-        return scene.rules.field.in_penalty_area(*_on_field(scene, name), side)
 
-    @staticmethod
-    def _in_goal_area(scene: Scene, name: str) -> bool:
-        return any(scene.rules.field.in_goal_area(*_on_field(scene, name), side) for side in SIDES)
-
-
-def _on_field(scene: Scene, name: str) -> Point:
+def _on_field(scene: Scene, place: Point) -> Point:
     """Returns the middle of a robot, or the place on the goal line before it if it is in a goal or partly outside."""
-    place, field = scene.sight.robots[name], scene.rules.field
+    field = scene.rules.field
     in_goal = any(field.in_goal(*place, side) for side in SIDES)
     if not in_goal and abs(place.x_m) > field.half_length_m + scene.rules.robot.radius_m:
         return place

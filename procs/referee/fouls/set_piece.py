@@ -23,7 +23,7 @@ def breach(scene: Scene, restart: Restart, excused: frozenset[str], keeper: str,
     if restart.team is Team.NONE:
         return None
     rivals = [name for name in scene.sight.touching if team_number(name) is restart.team.other]
-    taken = any(team_number(name) is restart.team for name in scene.touches.robots)  # by one that has left since, too
+    taken = scene.touches.of_team(restart.team)
     if rivals and not taken:
         return Foul(min(rivals), Reason.EARLY_TOUCH, restart.spot)
     if released or len(scene.touches.robots) > 1:

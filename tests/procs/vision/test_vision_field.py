@@ -237,7 +237,7 @@ def test_robots_a_narrow_gap_apart_are_two_obstacles(away_m: float) -> None:
 
 
 def test_ball_before_one_of_two_touching_robots_adds_none() -> None:
-    """It hides the inner or the outer side of one, or its middle."""
+    """The ball hides the inner or the outer side of a robot, or its middle."""
     robots = [(-1.0, 2.26, CYAN), (-1.0, 1.74, MAGENTA)]
     for y_m in np.linspace(2.1, 2.5, 9):
         ball_m = (-1.0 - math.sqrt(max(0.33**2 - (y_m - 2.26) ** 2, 0.0)), y_m, 0.11)
