@@ -4,22 +4,13 @@ Deviations are in pixels of the mirror's picture, so that they grow with distanc
 phantoms and recognition are those of B-Human's percepts from the truth and ER-Force's simulator; others are estimates.
 """
 
-from pydantic import BaseModel, ConfigDict
-
 from procs.model.realism import Realism
+from procs.simulation.mirror_errors import MIRRORS, MirrorErrors
 
 
-class PerceptErrors(BaseModel):
+class PerceptErrors(MirrorErrors):
     """Errors of percepts. 0: ideal."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    latency_s: float = 0.0
-    """From the exposure until the percepts are published. ER-Force: 35 ms, MRA: 25 ms."""
-    shake_px: float = 0.0
-    """Standard deviation by which the standing robot's mirror shakes everything that a frame shows, in pixels."""
-    shake_px_per_m_s: float = 0.0
-    """Growth of that deviation with each m/s of the robot, in pixels. The same as that of the camera."""
     ball_px: float = 0.0
     """Standard deviation of the ball's place, in pixels. Fitted to rendered pictures."""
     ball_area_px: float = 0.0
@@ -46,20 +37,12 @@ class PerceptErrors(BaseModel):
     """Robots a second that are not there. B-Human: 0.005 a frame."""
     line_phantoms: float = 0.0
     """Part of the points that do not lie on a line. An estimate."""
-    tilt_sd_deg: float = 0.0
-    """Standard deviation of the mirror's uncalibrated tilt about the robot's x and y axis, constant in a match."""
-    gaps_1_min: float = 0.0
-    """Interruptions in a minute, in which frames are lost in a row."""
-    gap_s: float = 0.0
-    """Mean duration of an interruption."""
 
 
 PRESETS: dict[Realism, PerceptErrors] = {
-    "none": PerceptErrors(),
+    "none": PerceptErrors(**dict(MIRRORS["none"])),
     "friendly": PerceptErrors(
-        latency_s=0.02,
-        shake_px=0.1,
-        shake_px_per_m_s=0.15,
+        **dict(MIRRORS["friendly"]),
         ball_px=0.1,
         ball_area_px=0.08,
         robot_along_px=0.18,
@@ -72,9 +55,7 @@ PRESETS: dict[Realism, PerceptErrors] = {
         line_phantoms=0.01,
     ),
     "realistic": PerceptErrors(
-        latency_s=0.035,
-        shake_px=0.2,
-        shake_px_per_m_s=0.3,
+        **dict(MIRRORS["realistic"]),
         ball_px=0.15,
         ball_area_px=0.09,
         robot_along_px=0.2,
@@ -88,14 +69,9 @@ PRESETS: dict[Realism, PerceptErrors] = {
         mouth_phantoms_1_s=0.05,
         robot_phantoms_1_s=0.05,
         line_phantoms=0.02,
-        tilt_sd_deg=0.05,
-        gaps_1_min=1.0,
-        gap_s=0.15,
     ),
     "harsh": PerceptErrors(
-        latency_s=0.07,
-        shake_px=0.4,
-        shake_px_per_m_s=0.6,
+        **dict(MIRRORS["harsh"]),
         ball_px=0.3,
         ball_area_px=0.24,
         robot_along_px=0.2,
@@ -109,8 +85,5 @@ PRESETS: dict[Realism, PerceptErrors] = {
         mouth_phantoms_1_s=0.05,
         robot_phantoms_1_s=0.1,
         line_phantoms=0.04,
-        tilt_sd_deg=0.3,
-        gaps_1_min=2.0,
-        gap_s=0.3,
     ),
 }
