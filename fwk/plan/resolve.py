@@ -15,7 +15,8 @@ from fwk.plan.files.settings import effective
 from fwk.plan.files.source import Node
 from fwk.plan.files.substitution import substitute
 from fwk.plan.files.templates import Asked
-from fwk.plan.stages import stages_in, turns_of, without_former_every
+from fwk.plan.stages import stages_in
+from fwk.plan.turns import split_turns, turns_of
 from fwk.plan.wiring.component_spec import ComponentSpec
 
 
@@ -94,11 +95,11 @@ def resolve(
         if asked.entry.command and (missing := missing_program(asked.entry.command, folders)):
             report(asked.node.at("command").place, missing)
         _add_shared(files, asked, declared, report)
-        layers, former = without_former_every(asked, declared, problems)
+        layers, turns = split_turns(asked, declared, problems)
         config, origins = effective(declared.config, layers, asked.node.place, report)
         _check_ports(asked, declared, problems)
         indices = stages_in(asked, declared, stages, problems)
-        every, offset = turns_of(asked, declared, former, problems)
+        every, offset = turns_of(asked, declared, turns, problems)
         found.append(Resolved(asked, declared, indices, config, origins, every, offset))
     _check_time_sources(found, problems)
     _check_shared(files, found, problems)

@@ -12,7 +12,7 @@ from fwk.model.errors import Problems
 from fwk.plan.classes import UnusableError, components_in, find_class, imported
 from fwk.plan.files.folders import folders_of, join
 from fwk.plan.files.launch_file import Files, find_launch_file, read_files
-from fwk.plan.files.schema import HostFile, LaunchFile
+from fwk.plan.files.schema import EVERY, OFFSET, ComponentEntry, HostFile, LaunchFile
 from fwk.plan.files.templates import Asked, expand
 from fwk.plan.packages import component_packages
 
@@ -178,7 +178,15 @@ def _definitions_of(use: str, config: type[Config]) -> Schema:
     """Returns the settings of a class and the types in them, made once for all files, to be read only."""
     made = config.model_json_schema(ref_template=f"{_REF}{use}.{{model}}", schema_generator=DocumentedSchema)
     below = {f"{use}.{name}": _partial(each) for name, each in made.pop("$defs", {}).items()}
-    return {**below, use: _partial(made)}
+    own = _partial(made)
+    own["properties"] = {**_turns(), **own.get("properties", {})}
+    return {**below, use: own}
+
+
+def _turns() -> Schema:
+    """Returns the keys of a component that may stand among its settings, unless it has settings of these names."""
+    keys = ComponentEntry.model_json_schema(schema_generator=DocumentedSchema)["properties"]
+    return {name: keys[name] for name in (EVERY, OFFSET)}
 
 
 def _joined(word: str, schemas: list[Schema]) -> Schema:

@@ -23,6 +23,8 @@ from fwk.model.sections import LogPlan, RestartPolicy, RunsPlan
 PACE_MAX = "max"
 _PORTS = "reads", "writes", "serves", "calls"
 """Keys with the ports of a program."""
+EVERY, OFFSET = "every", "offset"
+"""Keys of a component that may stand among its settings too."""
 
 
 def _as_list(value: Any) -> Any:
