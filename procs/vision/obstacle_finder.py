@@ -3,21 +3,18 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import reduce
-from operator import and_, or_
 from typing import NamedTuple
 
 import numpy as np
 
-from procs.model.algebra import Floats, Indices, median
+from procs.model.algebra import Floats, median
 from procs.model.robot import ROBOT
-from procs.vision.colours import ColourRange, Mask, Picture
+from procs.vision.colours import ColourRange, Picture
+from procs.vision.feet import Feet, feet_in
 from procs.vision.mirror import Mirror
 from procs.vision.scan import Scan
 from procs.vision.uncertainty import ground_covariance
 
-_BODY_SAMPLES = 4  # so many black samples in a row are a body
-_COVERED = 0.75  # if a larger share of the rays begins black, the camera is covered
 _BETWEEN_RAYS = 0.23  # standard deviation of a middle across the ray, as a share of the distance between two rays
 _BESIDE_RAYS = 2  # rays from one body to the next if nothing is between them
 _GAP = 1.4  # width of the gap that a ball in front of a robot makes at most, as a multiple of the robot's radius
@@ -26,8 +23,6 @@ _APART_RAYS = 2.5  # ... if rays in it meet no robot, and ...
 _APART_WIDTH = 0.7  # ... if what is on either side is as wide as this share of a robot: a ball hides less
 _WHOLE = 0.3  # a robot counts as seen wholly if at most this share of half its width is missing
 _LOST = 0.2  # standard deviation of a middle across the ray, as a share of the hidden width
-_FEET_SAMPLES = 3  # the near edge is hidden unless carpet is visible within so many samples before it
-_NOWHERE = np.empty(0, np.intp), np.empty((0, 2))
 
 
 @dataclass(frozen=True)
@@ -40,9 +35,9 @@ class Obstacle:
 
 
 class _Group(NamedTuple):
-    """Points (n, 2) at the feet of one or more robots, counter-clockwise."""
+    """Feet of one or more robots."""
 
-    edges_m: Floats
+    feet: Feet
     right_hidden: bool = False
     """Something nearer hides the first end."""
     left_hidden: bool = False
@@ -67,46 +62,31 @@ class ObstacleFinder:
 
     def find(self, hsv: Picture) -> list[Obstacle]:
         """Returns all robots in a scan (rays, samples, 3) in HSV, counter-clockwise."""
-        rays, edges_m = self._near_edges(hsv)
-        if len(edges_m) < self.least_rays:
+        feet = feet_in(hsv, self.star, self.black, self.carpet)
+        if len(feet) < self.least_rays:
             return []
-        return [self._obstacle(part) for group in self._groups(rays, edges_m) for part in self._robots(group)]
+        return [self._obstacle(part) for group in self._groups(feet) for part in self._robots(group)]
 
-    def _near_edges(self, hsv: Picture) -> tuple[Indices, Floats]:
-        """Returns the rays (n) that meet something black, in order, and the points (n, 2) of its feet."""
-        if hsv.shape[1] < _BODY_SAMPLES:
-            return _NOWHERE
-        black = self.black.mask(hsv)
-        standing = reduce(or_, (colour.mask(hsv) for colour in self.carpet))
-        last = black.shape[1] - _BODY_SAMPLES + 1
-        body = reduce(and_, (black[:, i : last + i] for i in range(_BODY_SAMPLES)))
-        rays = np.flatnonzero(body.any(axis=1))
-        starts = body[rays].argmax(axis=1)
-        if (starts == 0).sum() > _COVERED * len(body):
-            return _NOWHERE
-        seen = (starts == 0) | _any_before(standing, rays, starts)
-        rays, starts = rays[seen], starts[seen]
-        edges_m = (self.star.ground_m[rays, starts] + self.star.ground_m[rays, np.maximum(starts - 1, 0)]) / 2
-        return rays, np.asarray(edges_m)
-
-    def _groups(self, rays: Indices, edges_m: Floats) -> list[_Group]:
-        """Divides the edge points (n, 2) at gaps wider than those that a ball in front of a robot makes."""
+    def _groups(self, feet: Feet) -> list[_Group]:
+        """Divides feet at gaps wider than those that a ball in front of a robot makes."""
+        rays, edges_m = feet.rays, feet.points_m
         gaps_m = np.hypot(*(edges_m - np.roll(edges_m, 1, axis=0)).T)  # the first with the last: the rays go around
         ranges_m = np.hypot(edges_m[:, 0], edges_m[:, 1])
         blur_m, _ = self.mirror.metres_per_px_each(ranges_m)
+        steps = (rays - np.roll(rays, 1)) % len(self.star.ground_m)
         breaks = np.flatnonzero(gaps_m > _GAP * self.radius_m + blur_m)
-        if len(breaks) == 0:
-            return [_Group(edges_m)]
-        beside = (rays - np.roll(rays, 1))[breaks] % len(self.star.ground_m) <= _BESIDE_RAYS
+        if len(breaks) == 0:  # a group alone may go around from the last ray to the first
+            return [_Group(feet.part(np.roll(np.arange(len(feet)), -steps.argmax())))]
+        beside = steps[breaks] <= _BESIDE_RAYS
         nearer_before = (np.roll(ranges_m, 1) < ranges_m)[breaks]
         right_hidden = (beside & nearer_before).tolist()
         left_hidden = np.roll(beside & ~nearer_before, -1).tolist()
-        parts = np.split(np.roll(edges_m, -breaks[0], axis=0), breaks[1:] - breaks[0])
-        return [_Group(*each) for each in zip(parts, right_hidden, left_hidden, strict=True)]
+        parts = np.split(np.roll(np.arange(len(feet)), -breaks[0]), breaks[1:] - breaks[0])
+        return [_Group(feet.part(part), *ends) for part, *ends in zip(parts, right_hidden, left_hidden, strict=True)]
 
     def _robots(self, group: _Group) -> Iterator[_Group]:
         """Divides a group that is too wide for one robot at its widest gap; one without gaps evenly."""
-        edges_m = group.edges_m
+        edges_m, places = group.feet.points_m, np.arange(len(group.feet))
         if len(edges_m) < self.least_rays:
             return
         most = len(edges_m) // self.least_rays
@@ -115,11 +95,13 @@ class ObstacleFinder:
             yield group
             return
         if (first := self._begin_of_gap(edges_m)) is not None:
-            yield from self._robots(_Group(edges_m[: first + 1], group.right_hidden))
-            yield from self._robots(_Group(edges_m[first + 1 :], left_hidden=group.left_hidden))
+            yield from self._robots(_Group(group.feet.part(places[: first + 1]), group.right_hidden))
+            yield from self._robots(_Group(group.feet.part(places[first + 1 :]), left_hidden=group.left_hidden))
             return
-        for number, part in enumerate(np.array_split(edges_m, parts)):
-            yield _Group(part, number == 0 and group.right_hidden, number == parts - 1 and group.left_hidden)
+        for number, part in enumerate(np.array_split(places, parts)):
+            yield _Group(
+                group.feet.part(part), number == 0 and group.right_hidden, number == parts - 1 and group.left_hidden
+            )
 
     def _robots_wide(self, edges_m: Floats) -> float:
         """Returns how wide the points (n, 2) of a group are, as a multiple of a robot at their distance."""
@@ -139,10 +121,11 @@ class ObstacleFinder:
 
     def _obstacle(self, group: _Group) -> Obstacle:
         """Returns the robot of a group; the usual width places the middle of one that is hidden on one side."""
-        edges_m, step_rad = group.edges_m, math.tau / len(self.star.ground_m)
+        edges_m, step_rad = group.feet.points_m, math.tau / len(self.star.ground_m)
+        seen_m = edges_m[group.feet.seen] if group.feet.seen.any() else edges_m
         seen_rad = _turn(edges_m[0], edges_m[-1])
         begin_rad = math.atan2(*edges_m[0, ::-1])
-        away_m = self._away_m(edges_m, begin_rad + seen_rad / 2)
+        away_m = self._away_m(seen_m, begin_rad + seen_rad / 2)
         middle_rad, lost_rad = seen_rad / 2, 0.0
         if group.right_hidden or group.left_hidden:
             for _ in range(2):  # how wide a robot should be depends on its distance, which depends on its middle
@@ -154,7 +137,7 @@ class ObstacleFinder:
                 if group.right_hidden != group.left_hidden:
                     seen = half_rad - step_rad / 2  # from the edge that is seen to the middle
                     middle_rad = seen_rad - seen if group.right_hidden else seen
-                    away_m = self._away_m(edges_m, begin_rad + middle_rad)
+                    away_m = self._away_m(seen_m, begin_rad + middle_rad)
         middle_rad += begin_rad
         x_m, y_m = away_m * math.cos(middle_rad), away_m * math.sin(middle_rad)
         along_px, across_px = self.deviation_px
@@ -170,12 +153,6 @@ class ObstacleFinder:
         along_m = edge_x_m * ahead_x + edge_y_m * ahead_y
         across_m = edge_y_m * ahead_x - edge_x_m * ahead_y
         return median(along_m + np.sqrt(np.maximum(self.radius_m**2 - across_m**2, 0.0)))
-
-
-def _any_before(mask: Mask, rays: Indices, starts: Indices) -> Mask:
-    """Returns flags (n): whether a mask marks one of the last samples before `starts` (n) on the rays (n)."""
-    samples = (starts[:, None] - np.arange(1, _FEET_SAMPLES + 1)).clip(0)
-    return np.asarray(mask[rays[:, None], samples].any(axis=1))
 
 
 def _turn(first: Floats, last: Floats) -> float:

@@ -272,13 +272,29 @@ def test_ball_before_a_robot_does_not_split_it() -> None:
     assert (found.x_m, found.y_m) == pytest.approx((2.0, 0.0), abs=0.06)
 
 
-def test_robot_straight_behind_is_one() -> None:
-    """The rays begin and end there."""
-    for lateral_m in (-0.1, 0.0, 0.1):
-        for heading_rad in (0.0, math.pi):
-            robot = (-5.0 if heading_rad == 0.0 else -1.0, 2.0 + lateral_m, CYAN)
-            found = obstacles(renderer().render(Scene(Pose(-3.0, 2.0, heading_rad), [robot], None)))
-            assert len(found) == 1
+@pytest.mark.parametrize("away_m", [1.0, 2.0, 3.0, 4.0])
+@pytest.mark.parametrize("ball_rad", [0.0, 0.5, -0.5])
+@pytest.mark.parametrize("bearing_rad", [0.0, 2.0, math.pi])  # the rays begin and end at 0
+def test_held_ball_leaves_a_robot_in_its_place(away_m: float, ball_rad: float, bearing_rad: float) -> None:
+    """A robot holds a ball straight before it, or 0.5 rad aside, where the ball hides one side of its foot."""
+    rng, errors_m = np.random.default_rng(4), []
+    for turn_rad in np.linspace(0.0, 0.035, 8):  # the angle between two rays
+        heading_rad = bearing_rad + turn_rad + math.pi + ball_rad
+        place = away_m * np.array((math.cos(bearing_rad + turn_rad), math.sin(bearing_rad + turn_rad)))
+        robot = place + np.array((-3.0, 2.0))
+        ball = robot + 0.33 * np.array((math.cos(heading_rad), math.sin(heading_rad)))
+        scene = Scene(Pose(-3.0, 2.0, 0.0), [(*robot, CYAN)], (*ball, 0.11))
+        (found,) = obstacles(picture(scene, rng))
+        errors_m.append((place[0] * found.y_m - place[1] * found.x_m) / away_m)
+    assert abs(np.mean(errors_m)) < 0.03
+
+
+@pytest.mark.parametrize("away_m", [2.0, 4.0, -2.0, -4.0])
+@pytest.mark.parametrize("lateral_m", [-0.1, 0.0, 0.1])
+def test_lone_robot_straight_ahead_or_behind_is_in_place(away_m: float, lateral_m: float) -> None:
+    """The rays begin and end straight ahead."""
+    (found,) = obstacles(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), [(away_m - 3.0, 2.0 + lateral_m, CYAN)], None)))
+    assert (found.x_m, found.y_m) == pytest.approx((away_m, lateral_m), abs=0.06)
 
 
 def test_touching_robot_is_seen() -> None:
