@@ -21,6 +21,7 @@ _GAP = 1.4  # width of the gap that a ball in front of a robot makes at most, as
 _APART = 0.6  # a gap this wide, as a share of the radius, divides what is too wide for one robot ...
 _APART_RAYS = 2.5  # ... if rays in it meet no robot, and ...
 _APART_WIDTH = 0.7  # ... if what is on either side is as wide as this share of a robot: a ball hides less
+_OVERLAP_WIDTH = 1.15  # what is this wide for one robot is divided where one robot hides another
 _WHOLE = 0.3  # a robot counts as seen wholly if at most this share of half its width is missing
 _LOST = 0.2  # standard deviation of a middle across the ray, as a share of the hidden width
 
@@ -85,29 +86,52 @@ class ObstacleFinder:
         return [_Group(feet.part(part), *ends) for part, *ends in zip(parts, right_hidden, left_hidden, strict=True)]
 
     def _robots(self, group: _Group) -> Iterator[_Group]:
-        """Divides a group that is too wide for one robot at its widest gap; one without gaps evenly."""
-        edges_m, places = group.feet.points_m, np.arange(len(group.feet))
-        if len(edges_m) < self.least_rays:
+        """Divides a group that is too wide for one robot where one hides another or at a gap; without either evenly."""
+        feet, places = group.feet, np.arange(len(group.feet))
+        if len(feet) < self.least_rays:
             return
-        most = len(edges_m) // self.least_rays
-        parts = min(max(round(self._robots_wide(edges_m)), 1), most)
+        wide = self._robots_wide(feet.points_m)
+        if wide > _OVERLAP_WIDTH and (step := self._begin_of_step(feet)) is not None:
+            first, hides_left = step
+            yield from self._robots(_Group(feet.part(places[: first + 1]), group.right_hidden, not hides_left))
+            yield from self._robots(_Group(feet.part(places[first + 1 :]), hides_left, group.left_hidden))
+            return
+        parts = min(max(round(wide), 1), len(feet) // self.least_rays)
         if parts == 1:
             yield group
-            return
-        if (first := self._begin_of_gap(edges_m)) is not None:
-            yield from self._robots(_Group(group.feet.part(places[: first + 1]), group.right_hidden))
-            yield from self._robots(_Group(group.feet.part(places[first + 1 :]), left_hidden=group.left_hidden))
-            return
-        for number, part in enumerate(np.array_split(places, parts)):
-            yield _Group(
-                group.feet.part(part), number == 0 and group.right_hidden, number == parts - 1 and group.left_hidden
-            )
+        elif (gap := self._begin_of_gap(feet.points_m)) is not None:
+            yield from self._robots(_Group(feet.part(places[: gap + 1]), group.right_hidden))
+            yield from self._robots(_Group(feet.part(places[gap + 1 :]), left_hidden=group.left_hidden))
+        else:
+            for number, part in enumerate(np.array_split(places, parts)):
+                ends = number == 0 and group.right_hidden, number == parts - 1 and group.left_hidden
+                yield _Group(feet.part(part), *ends)
 
     def _robots_wide(self, edges_m: Floats) -> float:
         """Returns how wide the points (n, 2) of a group are, as a multiple of a robot at their distance."""
         range_m = float(np.hypot(edges_m[:, 0], edges_m[:, 1]).mean())
         expected_rad = 2 * math.asin(min(self.radius_m / (range_m + self.radius_m), 1.0))
         return _turn(edges_m[0], edges_m[-1]) / expected_rad
+
+    def _begin_of_step(self, feet: Feet) -> tuple[int, bool] | None:
+        """Returns the foot before the largest step in distance, and whether the nearer robot is before the step.
+
+        None without a step from ray to ray between a robot and another one, which it hides in part.
+        """
+        ranges_m = np.hypot(feet.points_m[:, 0], feet.points_m[:, 1])
+        steps_m = np.diff(ranges_m)
+        steps_m[np.diff(feet.rays) % len(self.star.ground_m) > _BESIDE_RAYS] = 0.0
+        least = self.least_rays - 1
+        possible_m = steps_m[least : len(steps_m) - least]
+        if len(possible_m) == 0:
+            return None
+        first = least + int(np.abs(possible_m).argmax())
+        hides_left = bool(steps_m[first] > 0.0)
+        blur_m, _ = self.mirror.metres_per_px(float(ranges_m[first : first + 2].max()))
+        nearer_m = feet.points_m[: first + 1] if hides_left else feet.points_m[first + 1 :]
+        if abs(steps_m[first]) <= _APART * self.radius_m + blur_m or self._robots_wide(nearer_m) < _APART_WIDTH:
+            return None
+        return first, hides_left
 
     def _begin_of_gap(self, edges_m: Floats) -> int | None:
         """Returns the point (of n, 2) before the widest gap between robots; None without a gap."""

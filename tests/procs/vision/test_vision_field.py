@@ -272,6 +272,24 @@ def test_ball_before_a_robot_does_not_split_it() -> None:
     assert (found.x_m, found.y_m) == pytest.approx((2.0, 0.0), abs=0.06)
 
 
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize(
+    ("near_m", "far_m", "apart_rad"), [(1.81, 2.3, 0.155), (1.35, 1.8, 0.161), (0.62, 0.91, 0.716)]
+)
+def test_robot_close_behind_another_is_in_its_place(near_m: float, far_m: float, apart_rad: float, side: float) -> None:
+    """The robots nearly touch each other, and one hides a part of the other."""
+    for bearing_rad in np.linspace(1.0, 1.035, 4):
+        places = [
+            distance_m * np.array((math.cos(angle), math.sin(angle)))
+            for distance_m, angle in ((near_m, bearing_rad), (far_m, bearing_rad + side * apart_rad))
+        ]
+        others = [(x_m - 3.0, y_m + 2.0, CYAN) for x_m, y_m in places]
+        found = obstacles(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), others, None)))
+        errors_m = [min(math.dist(place, (each.x_m, each.y_m)) for each in found) for place in places]
+        assert len(found) == 2
+        assert max(errors_m) < 0.1
+
+
 @pytest.mark.parametrize("away_m", [1.0, 2.0, 3.0, 4.0])
 @pytest.mark.parametrize("ball_rad", [0.0, 0.5, -0.5])
 @pytest.mark.parametrize("bearing_rad", [0.0, 2.0, math.pi])  # the rays begin and end at 0
