@@ -34,9 +34,18 @@ class Feet:
     def __len__(self) -> int:
         return len(self.rays)
 
-    def part(self, indices: Indices) -> "Feet":
+    def part(self, which: slice | Indices) -> "Feet":
         """Returns some of the feet."""
-        return Feet(self.rays[indices], self.points_m[indices], self.seen[indices])
+        return Feet(self.rays[which], self.points_m[which], self.seen[which])
+
+    def seen_m(self) -> Floats:
+        """Returns the places (m, 2) of the feet that are seen; of all if none is."""
+        seen = np.count_nonzero(self.seen)
+        return self.points_m if seen in (0, len(self)) else self.points_m[self.seen]
+
+    def beginning_at(self, first: int) -> "Feet":
+        """Returns the feet beginning with another one; those before it come last."""
+        return self.part(np.roll(np.arange(len(self)), -first)) if first else self
 
 
 NO_FEET = Feet(np.empty(0, np.intp), np.empty((0, 2)), np.empty(0, bool))

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -77,33 +78,34 @@ class ObstacleFinder:
         steps = (rays - np.roll(rays, 1)) % len(self.star.ground_m)
         breaks = np.flatnonzero(gaps_m > _GAP * self.radius_m + blur_m)
         if len(breaks) == 0:  # a group alone may go around from the last ray to the first
-            return [_Group(feet.part(np.roll(np.arange(len(feet)), -steps.argmax())))]
+            return [_Group(feet.beginning_at(int(steps.argmax())))]
         beside = steps[breaks] <= _BESIDE_RAYS
         nearer_before = (np.roll(ranges_m, 1) < ranges_m)[breaks]
         right_hidden = (beside & nearer_before).tolist()
         left_hidden = np.roll(beside & ~nearer_before, -1).tolist()
-        parts = np.split(np.roll(np.arange(len(feet)), -breaks[0]), breaks[1:] - breaks[0])
-        return [_Group(feet.part(part), *ends) for part, *ends in zip(parts, right_hidden, left_hidden, strict=True)]
+        rolled, bounds = feet.beginning_at(int(breaks[0])), [*(breaks - breaks[0]).tolist(), len(feet)]
+        ends = zip(pairwise(bounds), right_hidden, left_hidden, strict=True)
+        return [_Group(rolled.part(slice(*bound)), right, left) for bound, right, left in ends]
 
     def _robots(self, group: _Group) -> Iterator[_Group]:
         """Divides a group that is too wide for one robot where one hides another or at a gap; without either evenly."""
-        feet, places = group.feet, np.arange(len(group.feet))
+        feet = group.feet
         if len(feet) < self.least_rays:
             return
         wide = self._robots_wide(feet.points_m)
         if wide > _OVERLAP_WIDTH and (step := self._begin_of_step(feet)) is not None:
             first, hides_left = step
-            yield from self._robots(_Group(feet.part(places[: first + 1]), group.right_hidden, not hides_left))
-            yield from self._robots(_Group(feet.part(places[first + 1 :]), hides_left, group.left_hidden))
+            yield from self._robots(_Group(feet.part(slice(first + 1)), group.right_hidden, not hides_left))
+            yield from self._robots(_Group(feet.part(slice(first + 1, None)), hides_left, group.left_hidden))
             return
         parts = min(max(round(wide), 1), len(feet) // self.least_rays)
         if parts == 1:
             yield group
         elif (gap := self._begin_of_gap(feet.points_m)) is not None:
-            yield from self._robots(_Group(feet.part(places[: gap + 1]), group.right_hidden))
-            yield from self._robots(_Group(feet.part(places[gap + 1 :]), left_hidden=group.left_hidden))
+            yield from self._robots(_Group(feet.part(slice(gap + 1)), group.right_hidden))
+            yield from self._robots(_Group(feet.part(slice(gap + 1, None)), left_hidden=group.left_hidden))
         else:
-            for number, part in enumerate(np.array_split(places, parts)):
+            for number, part in enumerate(np.array_split(np.arange(len(feet)), parts)):
                 ends = number == 0 and group.right_hidden, number == parts - 1 and group.left_hidden
                 yield _Group(feet.part(part), *ends)
 
@@ -146,7 +148,7 @@ class ObstacleFinder:
     def _obstacle(self, group: _Group) -> Obstacle:
         """Returns the robot of a group; the usual width places the middle of one that is hidden on one side."""
         edges_m, step_rad = group.feet.points_m, math.tau / len(self.star.ground_m)
-        seen_m = edges_m[group.feet.seen] if group.feet.seen.any() else edges_m
+        seen_m = group.feet.seen_m()
         seen_rad = _turn(edges_m[0], edges_m[-1])
         begin_rad = math.atan2(*edges_m[0, ::-1])
         away_m = self._away_m(seen_m, begin_rad + seen_rad / 2)
