@@ -58,6 +58,11 @@ class RobotModel(BaseModel):
         """Distance from the robot's middle to the plane of the mouth, in metres."""
         return self.radius_m * math.cos(math.radians(self.mouth_half_angle_deg))
 
+    @property
+    def fastest_ball_m_s(self) -> float:
+        """Speed in m/s that no kicked ball exceeds: the hardest kick of a robot that drives ahead at its limit."""
+        return self.kick_limit_m_s + self.wheel_limit_m_s
+
     def held_ball_m(self, ball: BallModel) -> float:
         """Returns the distance from the robot's middle to the middle of a ball in the mouth."""
         return self.mouth_m + ball.radius_m

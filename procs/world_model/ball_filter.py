@@ -62,9 +62,18 @@ class BallFilter:
     """Mixture of the models; `state` and `covariance` are those of the mixture."""
 
     def __init__(
-        self, position_m: Floats, covariance_m2: Floats, ball: BallModel, velocity_m_s: Floats | None = None
+        self,
+        position_m: Floats,
+        covariance_m2: Floats,
+        ball: BallModel,
+        velocity_m_s: Floats | None = None,
+        fastest_m_s: float = math.inf,
     ) -> None:
-        """Starts from one sighting (2) with its covariance (2, 2); the velocity is unknown, or a guess (2)."""
+        """Starts from one sighting (2) with its covariance (2, 2).
+
+        The velocity is unknown, or a guess (2). A sighting that needs a ball faster than `fastest_m_s` does not fit.
+        """
+        self._fastest_m_s = fastest_m_s
         self._sliding_m_s2 = ball.sliding_m_s2
         self._rolling_share = ball.rolling_share  # of the velocity, in the settled one ...
         self._spun_share = 1.0 - self._rolling_share  # ... and of the one at which the ball would roll with its spin
@@ -216,10 +225,12 @@ class BallFilter:
         evidence = float(likely.sum())
         if evidence < _CLUTTER_1_M2:
             return False
-        self._x, self._p = corrected(self._x, self._p, found)
-        self._mixture = None
-        self._weights = np.maximum(likely / evidence, _LEAST)
-        self._weights /= self._weights.sum()
+        states, covariances = corrected(self._x, self._p, found)
+        weights = np.maximum(likely / evidence, _LEAST)
+        weights /= weights.sum()
+        if math.hypot(*(weights @ states[:, _VELOCITY]).tolist()) > self._fastest_m_s:
+            return False
+        self._x, self._p, self._weights, self._mixture = states, covariances, weights, None
         return True
 
     def hold(self, state: Floats, covariance: Floats) -> None:

@@ -54,22 +54,25 @@ class BallFollower:
 
     def __init__(self, robot: str, config: WorldModelConfig) -> None:
         """Begins without a ball, for the robot with the name `robot`."""
-        self.tracker = BallTracker(config.ball)
+        fastest_m_s = config.robot.fastest_ball_m_s
+        self.tracker = BallTracker(config.ball, fastest_m_s)
         """Track of the ball."""
-        self.kicks = Kicks()
+        self.kicks = Kicks(fastest_m_s)
         """Kicks of the robot and its mates."""
         self.untold = Seen.NOTHING
         """Likeliest place of the ball in the newest own percept (0 or 1), until a message to the team has told it."""
         self._robot = robot
-        self._own_sights = OwnSights()
+        self._own_sights = OwnSights(fastest_m_s)
         self._placed = PlacedBall()
         self._held = False
         self.apply(config)
 
     def apply(self, config: WorldModelConfig) -> None:
-        """Takes new settings; if they describe another ball, the track begins anew."""
-        if self.tracker.ball != config.ball:
-            self.tracker = BallTracker(config.ball)
+        """Takes new settings; if they describe another ball or other kickers, the track begins anew."""
+        fastest_m_s = config.robot.fastest_ball_m_s
+        if (self.tracker.ball, self.tracker.fastest_m_s) != (config.ball, fastest_m_s):
+            self.tracker = BallTracker(config.ball, fastest_m_s)
+        self.kicks.fastest_m_s = self._own_sights.fastest_m_s = fastest_m_s
         self._config = config
         self._walls = Walls.of(config.field, config.ball)
         self._mouth_m = config.mouth_m

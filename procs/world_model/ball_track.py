@@ -36,8 +36,6 @@ from procs.world_model.seen import Seen
 from procs.world_model.told import IN_MOUTH_M
 from procs.world_model.walls import Walls
 
-FASTEST_M_S = 13.0
-"""Speed that no kick exceeds."""
 _LOST_US = 250_000  # a ball that no robot has seen for longer may have met something
 _USUAL_M_S = 11.0  # speed of a ball that was kicked hard
 _LATE_S = 0.03  # time by which a track lags behind a ball that was kicked
@@ -127,6 +125,8 @@ class BallTrack:
     time_us: int
     ball: BallModel
     """Friction and bounce of the ball."""
+    fastest_m_s: float
+    """Speed that no ball exceeds."""
     filter: BallFilter | None = None
     """None while the ball is not known."""
     seen_us: int = _NEVER_US
@@ -149,10 +149,12 @@ class BallTrack:
     def moved(self, time_us: int, step: Step) -> "BallTrack":
         """Returns the track at a later time; this one stays as it is."""
         if self.filter is None or self.is_forgotten(time_us, step):
-            return BallTrack(time_us, self.ball, None, self.seen_us, self.seen_m, carpet=self._carpet())
+            return BallTrack(
+                time_us, self.ball, self.fastest_m_s, None, self.seen_us, self.seen_m, carpet=self._carpet()
+            )
         doubts = self.doubts and tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= step.doubt_us)
-        ball, confirmed = self.filter.copy(), self.confirmed.copy()
-        made = BallTrack(time_us, self.ball, ball, self.seen_us, self.seen_m, confirmed, doubts, flight=self.flight)
+        last, ball, confirmed = (self.seen_us, self.seen_m), self.filter.copy(), self.confirmed.copy()
+        made = BallTrack(time_us, self.ball, self.fastest_m_s, ball, *last, confirmed, doubts, flight=self.flight)
         made._advance((time_us - self.time_us) / US_PER_S, step)
         return made
 
@@ -254,7 +256,7 @@ class BallTrack:
 
     def _new(self, position_m: Floats, covariance_m2: Floats, velocity_m_s: Floats | None = None) -> BallFilter:
         """Returns a filter that begins with a sighting, on the carpet that is known."""
-        made, carpet = BallFilter(position_m, covariance_m2, self.ball, velocity_m_s), self._carpet()
+        made, carpet = BallFilter(position_m, covariance_m2, self.ball, velocity_m_s, self.fastest_m_s), self._carpet()
         if carpet is not None:
             made.lie_on(carpet)
         return made
@@ -278,7 +280,7 @@ class BallTrack:
         for exposed_us, other in reversed(self.doubts):
             between_s = (self.time_us - exposed_us) / US_PER_S
             spread_m = 3 * np.sqrt(np.trace(sighting.covariance_m2 + other.covariance_m2))
-            near = np.hypot(*(sighting.position_m - other.position_m)) <= FASTEST_M_S * between_s + spread_m
+            near = np.hypot(*(sighting.position_m - other.position_m)) <= self.fastest_m_s * between_s + spread_m
             if near and (other.robot != sighting.robot or not self._contradicted(sighting.robot, exposed_us)):
                 self._begin(other, self._velocity_to(other, exposed_us))
                 self._advance(between_s, Step(rolling_m_s2=self.ball.rolling_m_s2))
@@ -333,7 +335,7 @@ class BallTrack:
         passed_s = (exposed_us - self.seen_us) / US_PER_S
         way_m = np.asarray(sighting.position_m - self.seen_m)
         length_m = float(np.hypot(*way_m))
-        if length_m > FASTEST_M_S * (passed_s + _LATE_S) + 3 * np.sqrt(np.trace(sighting.covariance_m2)):
+        if length_m > self.fastest_m_s * (passed_s + _LATE_S) + 3 * np.sqrt(np.trace(sighting.covariance_m2)):
             return None
         return way_m / max(passed_s, _LATE_S, length_m / _USUAL_M_S)
 

@@ -12,6 +12,7 @@ from operator import itemgetter
 
 from procs.model.ball import BALL, BallModel
 from procs.model.frames import Floats
+from procs.model.robot import ROBOT
 from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_track import BallTrack, Sighting, Step
@@ -43,13 +44,15 @@ class _Moment:
 class BallTracker:
     """Track of the ball: `advance` once a tick, then the inputs of the tick."""
 
-    def __init__(self, ball: BallModel = BALL) -> None:
+    def __init__(self, ball: BallModel = BALL, fastest_m_s: float = ROBOT.fastest_ball_m_s) -> None:
         self.ball = ball
         """Friction and bounce of the ball."""
+        self.fastest_m_s = fastest_m_s
+        """Speed that no ball exceeds."""
         self._now_us = 0
         self._steps: list[Step] = []
         """The last ticks."""
-        self._moments = [_Moment(BallTrack(-_KEPT_US, ball))]
+        self._moments = [_Moment(BallTrack(-_KEPT_US, ball, fastest_m_s))]
         self._sound = 1  # number of moments whose tracks contain all inputs
         self._current: BallTrack | None = None
 
@@ -174,7 +177,7 @@ class BallTracker:
         if place == 0 and time_us < times_us[0]:
             return
         if place == len(times_us) or times_us[place] != time_us:
-            self._moments.insert(place, _Moment(BallTrack(time_us, self.ball)))
+            self._moments.insert(place, _Moment(BallTrack(time_us, self.ball, self.fastest_m_s)))
             self._sound = min(self._sound, place)
         moment = self._moments[place]
         last = not moment.inputs or moment.inputs[-1][0] <= turn

@@ -19,7 +19,6 @@ from procs.world_model.told import mouth_of
 _MESSAGES = 2  # number of messages that tell mates of a kick, because the radio may lose one
 _KICKS = 8  # number of kicks of a mate whose times are known, so that none counts twice
 _OLDEST_S = 0.5  # older kicks of mates are not used
-_FASTEST_M_S = 30.0  # more than the strongest kicker that the settings allow gives, on the fastest robot
 _TIME_SHARE = 0.3  # of a tick: deviation of a kick's time, which lies somewhere in it; the root of 1/12 is 0.29
 
 
@@ -62,7 +61,9 @@ class _Heard:
 class Kicks:
     """Kicks of a robot and its mates; each kick is returned once."""
 
-    def __init__(self) -> None:
+    def __init__(self, fastest_m_s: float) -> None:
+        """Begins without a kick; no kick gives a ball a speed above `fastest_m_s`."""
+        self.fastest_m_s = fastest_m_s
         self._own: int | None = None
         self._of_mates: dict[str, _Heard] = {}
         self._messages = 0
@@ -82,18 +83,19 @@ class Kicks:
         The first number of kicks counts kicks long ago, and a number that falls comes from a restarted driver; both
         report no new kick. Neither does a lost robot, which does not know in which direction it kicked.
         """
-        known, self._own = self._own, kicker.kicks
+        known, self._own, lift_m_s = self._own, kicker.kicks, _lift_m_s(kicker)
         if (
             known is None
             or kicker.kicks <= known
             or not view.localized
-            or not _is_possible(kicker.kick_speed_m_s, _lift_m_s(kicker))
+            or not self._is_possible(kicker.kick_speed_m_s, lift_m_s)
         ):
             return None
+        velocity_m_s = view.kicked_m_s(kicker.kick_speed_m_s, mouth_m)
+        if not self._is_possible(*velocity_m_s.tolist(), lift_m_s):
+            return None
         self._messages = _MESSAGES
-        return Kick(
-            view.kicked_m_s(kicker.kick_speed_m_s, mouth_m), _lift_m_s(kicker), passed_s / 2, _TIME_SHARE * passed_s
-        )
+        return Kick(velocity_m_s, lift_m_s, passed_s / 2, _TIME_SHARE * passed_s)
 
     def of_mates(
         self, told: Iterable[tuple[team_message_t, Mate]], now_us: int, mouth_m: float, tick_s: float
@@ -111,7 +113,7 @@ class Kicks:
             heard = self._of_mates.setdefault(mate.name, _Heard(message.kicks))
             is_new = heard.takes(message, mate.overtaken)
             age_s = (now_us - message.kick_us) / US_PER_S
-            sound = _is_possible(message.kick_vx_m_s, message.kick_vy_m_s, message.kick_vz_m_s)
+            sound = self._is_possible(message.kick_vx_m_s, message.kick_vy_m_s, message.kick_vz_m_s)
             if is_new and mate.localized and sound and 0.0 <= age_s <= _OLDEST_S:
                 heard.times_us.append(message.kick_us)
                 mouth = mouth_of(mate, mouth_m, message.kick_us / US_PER_S)
@@ -119,10 +121,9 @@ class Kicks:
                 found.append(Kick(velocity_m_s, message.kick_vz_m_s, age_s, _TIME_SHARE * tick_s, mouth))
         return found
 
-
-def _is_possible(*velocity_m_s: float) -> bool:
-    """Returns whether a kick can give a ball such a velocity."""
-    return math.hypot(*velocity_m_s) < _FASTEST_M_S
+    def _is_possible(self, *velocity_m_s: float) -> bool:
+        """Returns whether a kick can give a ball such a velocity."""
+        return math.hypot(*velocity_m_s) <= self.fastest_m_s
 
 
 def _lift_m_s(kicker: kicker_state_t) -> float:

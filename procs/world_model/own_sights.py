@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Sequence
 
 from procs.model.units import US_PER_S
-from procs.world_model.ball_track import FASTEST_M_S, Sighting
+from procs.world_model.ball_track import Sighting
 from procs.world_model.frame_pace import FramePace
 
 _FRAMES = 2  # number of frames that have to agree; a single one may show another thing
@@ -17,7 +17,9 @@ _ELSEWHERE_M = 1.0  # the errors of two robots' places are smaller together
 class OwnSights:
     """Decides whether the own camera sees the ball away from a mate that believes it holds the ball."""
 
-    def __init__(self) -> None:
+    def __init__(self, fastest_m_s: float) -> None:
+        """Begins without a frame; no ball exceeds the speed `fastest_m_s`."""
+        self.fastest_m_s = fastest_m_s
         self._frames: deque[tuple[int, list[tuple[float, float]]]] = deque(maxlen=_FRAMES)
         self._pace = FramePace()
 
@@ -46,7 +48,6 @@ class OwnSights:
             seen_m and self._is_far(place_m, seen_m, told_us - exposed_us) for exposed_us, seen_m in self._frames
         )
 
-    @staticmethod
-    def _is_far(place_m: tuple[float, float], seen_m: Sequence[tuple[float, float]], between_us: int) -> bool:
-        reach_m = _ELSEWHERE_M + FASTEST_M_S * abs(between_us) / US_PER_S
+    def _is_far(self, place_m: tuple[float, float], seen_m: Sequence[tuple[float, float]], between_us: int) -> bool:
+        reach_m = _ELSEWHERE_M + self.fastest_m_s * abs(between_us) / US_PER_S
         return all(math.dist(place_m, each) > reach_m for each in seen_m)

@@ -8,6 +8,7 @@ import pytest
 
 from fwk.testing import Bench
 from lcmtypes.soccer import obstacle_t, team_message_t, world_model_t
+from procs.model.robot import ROBOT
 from procs.model.units import US_PER_S
 from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
@@ -82,7 +83,7 @@ def test_sightings_in_overtaken_messages_count(order: list[int]) -> None:
 
 def test_kick_in_an_overtaken_message_counts_once() -> None:
     """A mate kicks twice within 80 ms, and tells each kick twice; the message with the second kick comes first."""
-    kicks, found = Kicks(), []
+    kicks, found = Kicks(ROBOT.fastest_ball_m_s), []
     for number, told_us, overtaken in ((3, 1_000_000, False), (5, 1_080_000, False), (4, 1_040_000, True)):
         for each_us in (told_us, told_us + PERIOD_US // 2):
             said = message(each_us)
