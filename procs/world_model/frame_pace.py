@@ -1,4 +1,4 @@
-"""Pace of a camera: the time until its next frame."""
+"""Frames of a camera: the time until the next one, and which have come before."""
 
 from collections import deque
 from itertools import pairwise
@@ -8,6 +8,18 @@ from procs.model.units import US_PER_S
 _FRAMES = 4  # newest frames; the shortest time between two of them counts, as lost frames make others longer
 _LATE = 1.4  # multiple of this time within which the next frame comes
 _LONGEST_S = 1.0  # a camera that is silent for longer has no pace
+
+
+class NewFrames:
+    """Tells new frames from one that a driver publishes again, which would count twice."""
+
+    def __init__(self) -> None:
+        self._newest_us = 0
+
+    def takes(self, capture_us: int) -> bool:
+        """Takes a frame; returns whether it is new. A frame without a time of exposure, 0, always is."""
+        known_us, self._newest_us = self._newest_us, capture_us
+        return not capture_us or capture_us != known_us
 
 
 class FramePace:

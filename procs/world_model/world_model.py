@@ -29,7 +29,7 @@ from procs.model.kicker import tells_held
 from procs.model.robot import ABSENT, TEAM_NUMBERS, player_of
 from procs.model.units import US_PER_S
 from procs.world_model.ball_follower import BallFollower, BallNews
-from procs.world_model.frame_pace import FramePace
+from procs.world_model.frame_pace import FramePace, NewFrames
 from procs.world_model.opponents import strangers
 from procs.world_model.own_view import OwnView
 from procs.world_model.possession import holder_of
@@ -72,6 +72,7 @@ class WorldModel(Component):
         self._quiet = QuietMates(self._silent)
         self._frames = FramePace()  # of the camera that sees the obstacles
         self._percepts = FramePace()  # of percepts of the ball, in the ticks in which they come
+        self._new_balls, self._new_obstacles = NewFrames(), NewFrames()
         self._apply_settings()
         self._team = Team()
         self._view: OwnView | None = None
@@ -151,6 +152,8 @@ class WorldModel(Component):
     ) -> None:
         """Tracks the ball, and notes a kick and the newest percept for the next message to the team."""
         percept = self.ball_percept.value if self.ball_percept.refreshed else None
+        if percept and not self._new_balls.takes(percept.capture_us):
+            percept = None
         if percept:
             self._percepts.note(self.clock.now_us)
         news = BallNews(
@@ -189,7 +192,7 @@ class WorldModel(Component):
             tracks.predict(passed_s, config.opponent_timeout_s)
         percepts = self.obstacle_percepts.value
         age_s = config.age_s(percepts.capture_us, self.clock.now_us)
-        if self.obstacle_percepts.refreshed and counts(age_s):
+        if self.obstacle_percepts.refreshed and self._new_obstacles.takes(percepts.capture_us) and counts(age_s):
             self._frames.note(percepts.capture_us or self.clock.now_us)
             next_s = self._frames.next_s
             own, known, in_touch = self._own_team, team.first(len(mates)), in_time(mates, now_s)

@@ -211,3 +211,29 @@ def test_impossible_height_is_not_told_to_the_team() -> None:
             robot.see_ball(2.0, 0.0, z_m)
             robot.tick()
     assert all(math.isfinite(sent.ball_z_m) for sent in robot.bench.port("team_message").sent)
+
+
+def test_frame_that_comes_twice_counts_once() -> None:
+    """A driver publishes its newest frame again: what only that frame shows is neither the ball nor an opponent."""
+    robot = Watching()
+    for _ in range(20):
+        robot.see_ball(2.0, 0.0)
+        robot.tick()
+    for age_s in (0.035, 0.085):
+        robot.see_ball(-3.0, 0.0, age_s=age_s)
+        robot.see_robots((0.0, 3.0), age_s=age_s)
+        robot.tick()
+    assert robot.world.ball.x_m == pytest.approx(2.0, abs=0.05)
+    assert robot.world.opponents == []
+
+
+def test_frame_that_comes_twice_is_no_more_certain() -> None:
+    claims_m2 = []
+    for times in (1, 4):
+        robot = Watching()
+        for tick in range(40):
+            if tick % 4 < times:
+                robot.see_ball(2.0, 0.0, age_s=0.035 + 0.05 * (tick % 4))
+            robot.tick()
+        claims_m2.append(robot.world.ball.covariance[0][0])
+    assert claims_m2[1] == pytest.approx(claims_m2[0])
