@@ -123,7 +123,7 @@ class BallFollower:
         config = self._config
         age_s = config.age_s(percept.capture_us, now_us)
         seen = view.ball(percept, age_s)
-        self.untold = seen if all(map(self._is_inside_walls, seen.positions_m)) else Seen.NOTHING
+        self.untold = seen if self._is_possible(seen, percept.z_m, age_s) else Seen.NOTHING
         sightings = []
         for candidate, height_m in ((seen, percept.z_m), *view.other_balls(percept, age_s)):
             widened = candidate.widened(config.sight_correlation, config.pose_correlation)
@@ -149,13 +149,18 @@ class BallFollower:
 
     def _sightings(self, robot: str, seen: Seen, height_m: float, observer_m: Floats, age_s: float) -> list[Sighting]:
         """Returns a sighting of the ball (0 or 1), unless it is too old, from the future or impossible."""
-        if not (counts(age_s) and abs(height_m) < _HIGHEST_M and all(map(self._is_inside_walls, seen.positions_m))):
+        if not self._is_possible(seen, height_m, age_s):
             return []
         own = robot == self._robot
         return [
             Sighting(robot, own, position_m, covariance_m2, age_s, height_m, observer_m)
             for position_m, covariance_m2 in zip(seen.positions_m, seen.covariances_m2, strict=True)
         ]
+
+    def _is_possible(self, seen: Seen, height_m: float, age_s: float) -> bool:
+        """Returns whether a ball (0 or 1) seen at that height is neither too old, from the future nor elsewhere."""
+        inside = all(map(self._is_inside_walls, seen.positions_m))
+        return counts(age_s) and abs(height_m) < _HIGHEST_M and inside
 
     def _is_inside_walls(self, place_m: Floats) -> bool:
         """Returns whether a ball (2) can be there: inside the walls, give or take the error of a poor sighting."""

@@ -237,3 +237,16 @@ def test_frame_that_comes_twice_is_no_more_certain() -> None:
             robot.tick()
         claims_m2.append(robot.world.ball.covariance[0][0])
     assert claims_m2[1] == pytest.approx(claims_m2[0])
+
+
+@pytest.mark.parametrize(("z_m", "age_s"), [(math.nan, 0.035), (50.0, 0.035), (0.0, -0.06), (0.0, 0.7)])
+def test_team_hears_no_sighting_that_the_robot_rejects(z_m: float, age_s: float) -> None:
+    """A ball in the clouds, or an exposure that is still to come or too old."""
+    robot = Watching()
+    for _ in range(20):
+        robot.tick()
+    for _ in range(6):
+        robot.see_ball(2.0, 0.0, z_m, age_s)
+        robot.tick()
+    assert not robot.world.ball.known
+    assert not any(sent.ball_visible for sent in robot.bench.port("team_message").sent)
