@@ -13,7 +13,7 @@ from procs.world_model.opponents import OpponentSettings
 from procs.world_model.own_view import Shaking
 
 STALE_S = 0.5
-"""Older sightings, and older targets of the own skiller, do not count."""
+"""Older sightings, an older odometry and older targets of the own skiller do not count."""
 RESTART_S = 2.0
 """A robot whose agent is silent for longer does not play."""
 

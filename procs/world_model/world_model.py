@@ -77,7 +77,7 @@ class WorldModel(Component):
         self._team = Team()
         self._view: OwnView | None = None
         self._holds = False
-        self._role_us = self.clock.now_us  # time of the newest message of the own agent
+        self._role_us = self._odometry_us = self.clock.now_us  # time of the newest message of the own agent and base
         self._last_us = 0
         self._sent_us = -US_PER_S  # the first message is due at once
         self._untold_obstacles = Seen.NOTHING  # own sightings since the last message
@@ -90,7 +90,10 @@ class WorldModel(Component):
         if self.role.refreshed:
             self._role_us = self.clock.now_us
         self._holds = tells_held(self.kicker_state.value, self.clock.since_s(self.kicker_state.header.time_us))
-        view = OwnView(self.pose.value, self.odometry.value, known, self._shaking, self._view, passed_s)
+        if self.odometry.refreshed:
+            self._odometry_us = self.clock.now_us
+        odometry = self.odometry.value if self.clock.since_s(self._odometry_us) <= STALE_S else odometry_t()
+        view = OwnView(self.pose.value, odometry, known, self._shaking, self._view, passed_s)
         self._view = view
         told = self._listen(now_s)
         mates = self._team.localized(now_s, config.mate_timeout_s)

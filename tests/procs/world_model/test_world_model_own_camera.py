@@ -250,3 +250,16 @@ def test_team_hears_no_sighting_that_the_robot_rejects(z_m: float, age_s: float)
         robot.tick()
     assert not robot.world.ball.known
     assert not any(sent.ball_visible for sent in robot.bench.port("team_message").sent)
+
+
+def test_silent_wheels_do_not_move_the_robot_for_ever() -> None:
+    robot = Watching()
+    robot.tick()
+    for tick in range(40):
+        if tick < 20:
+            robot.bench.port("odometry").put(vx_m_s=2.0)
+        robot.bench.port("pose").put(x_m=0.1 * min(tick, 20), covariance=np.eye(3).tolist(), localized=True)
+        robot.bench.iterate()
+    world = robot.bench.port("world_model").sent
+    assert world[20].vx_m_s == pytest.approx(2.0)
+    assert world[-1].vx_m_s == 0.0
