@@ -1,6 +1,7 @@
 """Chooses the role of the robot in its team, and the skill for the moment."""
 
 import math
+from collections.abc import Mapping
 from typing import Literal
 
 from pydantic import ValidationInfo, field_validator
@@ -15,7 +16,7 @@ from procs.behaviour.company import Company, job_among_silent, rank_of
 from procs.behaviour.game import Game, frame_of, game_of
 from procs.behaviour.order import Order
 from procs.behaviour.skills.book import SKILLS
-from procs.behaviour.stalls import Stalls
+from procs.behaviour.stalls import NO_JOBS, Stalls
 from procs.behaviour.tactics import Tactics, leave_field
 from procs.behaviour.view import View, view_of
 from procs.model.ball import BALL, BallModel
@@ -84,6 +85,7 @@ class Agent(Component):
         self._tactics = Tactics(self.config.field)
         self._company = Company()
         self._stalls = Stalls()
+        self._jobs: Mapping[str, roles.Job] = NO_JOBS
         self._call: Call | None = None
         self.config_changed()
 
@@ -124,11 +126,14 @@ class Agent(Component):
         idle = roles.Job(self.role.value.role or roles.DEFENDER, view.own.place)
         company, players, duration_s = self._company, self.config.players, self.clock.iteration_s
         kept = company.goal_is_kept(view, field, players, game.sent_off, duration_s)
-        stalled = self._stalls.watch(view, game, field, duration_s)
+        stalled = self._stalls.watch(view, game, field, duration_s, self._jobs)
+        self._tactics.passing.stalled = stalled
+        self._jobs = NO_JOBS
         if company.watch(view, duration_s, game.sent_off) and view.localized:
             job = job_among_silent(view, rank_of(self._robot, players, game.sent_off), field, game)
         else:
-            job = roles.assign(view, field, self.config.use_pressing, game, kept, stalled).get(self._robot, idle)
+            self._jobs = roles.assign(view, field, self.config.use_pressing, game, kept, stalled)
+            job = self._jobs.get(self._robot, idle)
         if not self.config.use_roles and game.free_play and job.role != roles.GOALKEEPER:
             job = roles.Job(roles.ATTACKER, view.ball.place)
         order = self._tactics.decide(view, game, job, held, duration_s)

@@ -143,7 +143,7 @@ class BallPlay:
         if kick is None or kick.intention == "clear":
             return kick
         if kick.intention == "pass":
-            mates = [mate for mate in _unmarked(view, view.mates) if mate.name == kick.receiver]
+            mates = [mate for mate in _unmarked(view, field_players(view)) if mate.name == kick.receiver]
             return self._pass(view, mates, math.inf, 0.0, kick.receiver)
         if kick.intention == "lob":
             return kick if aim.best_lob(view.ball.place, view.others, self.field, view.bodies).free_rad > 0.0 else None
@@ -269,7 +269,7 @@ class BallPlay:
         return self._pass(view, _unmarked(view, field_players(view)), back_m, aim.LANE_RAD, "")
 
     def _pass(self, view: View, mates: Sequence[Robot], back_m: float, lane_rad: float, kept: str) -> Order | None:
-        asked = [mate for mate in mates if self._passing.may_ask(mate)]
+        asked = [mate for mate in mates if self._passing.may_ask(mate) and self._passing.is_fit(mate, self.field)]
         kept = kept or self._passing.said.receiver
         best = aim.best_pass(view.own, asked, view.opponents, view.bodies, back_m, kept)
         if best is None or best.free_rad < lane_rad:

@@ -6,9 +6,10 @@ is not asked for a while. Both keep to the pass until the ball has arrived.
 """
 
 import math
+from collections.abc import Container
 
 from procs.behaviour.view import Agreement, Robot, View
-from procs.model.field import Point
+from procs.model.field import Field, Point
 
 ANSWER_S = 0.5
 """An announced pass that is not accepted for longer is dropped: the way to the mate and back takes 0.2 s to 0.4 s."""
@@ -17,6 +18,7 @@ _FLIGHT_S = 2.5  # a pass has arrived by then, or got lost
 _TAKEN_M = 0.06  # a robot with the ball so near to its body has it
 _STANDS_M_S = 0.5  # a slower receiver stands, as far as its mates know ...
 _STOPS_S = 0.4  # ... and has stopped so long after its answer
+_BESIDE_FIELD_M = 0.1  # a receiver may stand so far outside: the ball reaches its mouth in the field
 
 _NOWHERE = Point(0.0, 0.0)
 
@@ -27,6 +29,8 @@ class Passing:
     def __init__(self) -> None:
         self.said = Agreement()
         """Agreement that the team is told in this tick."""
+        self.stalled: Container[str] = ()
+        """Mates that stand though they should drive; they get no pass."""
         self.accepted = False
         """Whether the mate to which a pass is announced waits for it."""
         self.stands = False
@@ -43,6 +47,10 @@ class Passing:
     def may_ask(self, mate: Robot) -> bool:
         """Returns whether a pass may be announced to a mate: it has not lately left one without an answer."""
         return mate.name not in self._refused_s
+
+    def is_fit(self, mate: Robot, field: Field) -> bool:
+        """Returns whether a mate can take a pass: it is in the field, and does not stand though it should drive."""
+        return mate.name not in self.stalled and field.in_field(*mate.place, _BESIDE_FIELD_M)
 
     def watch(self, view: View, holds_ball: bool, duration_s: float) -> None:
         """Takes the words of the mates, `duration_s` after the last."""

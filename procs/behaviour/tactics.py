@@ -164,7 +164,8 @@ class Tactics:
         if holds_ball and not game.stopped:
             return self._play_ball(view)
         taker = Robot(view.own.name, game.spot, view.own.heading_rad)
-        mates = [] if self._penalty else field_players(view)  # a penalty is shot
+        fit = [mate for mate in field_players(view) if self.passing.is_fit(mate, self.field)]
+        mates = [] if self._penalty else fit  # a penalty is shot
         if not game.stopped:  # the taker has turned to its receiver
             mates = [mate for mate in mates if mate.name == self._receiver] or mates
         planned = self._plan(view, game)

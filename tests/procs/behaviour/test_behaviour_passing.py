@@ -3,7 +3,7 @@
 import pytest
 
 from procs.behaviour import roles
-from procs.behaviour.game import Game
+from procs.behaviour.game import Game, Whose
 from procs.behaviour.order import Order
 from procs.behaviour.passing import ANSWER_S, Passing
 from procs.behaviour.roles import ATTACKER, SUPPORTER, receiver
@@ -11,6 +11,7 @@ from procs.behaviour.tactics import Tactics
 from procs.behaviour.view import Agreement, Ball, Robot, View
 from procs.model.field import Point
 from procs.model.game_states import State
+from procs.model.robot import ABSENT
 from tests.procs.behaviour.behaviour_parts import FIELD, agreed, ball, job, robot, view
 
 TICK_S = 0.05
@@ -62,6 +63,39 @@ def test_marked_mate_gets_no_pass(rival_m: float, skill: str) -> None:
         PASSER._replace(place=Point(-4.5, 0.0)), ball(-4.17, 0.0), (agreed(NEAR),), (robot("", -3.4, -0.4), behind)
     )
     assert play(Tactics(FIELD), danger, 0.5)[-1].skill == skill
+
+
+OUTSIDE = agreed(NEAR)._replace(place=Point(3.0, 7.4))
+
+
+@pytest.mark.parametrize(
+    ("mate", "stalled", "passes"), [(agreed(NEAR), (), True), (agreed(NEAR), ("cyan3",), False), (OUTSIDE, (), False)]
+)
+def test_mate_that_is_out_of_order_or_off_the_field_gets_no_pass(
+    mate: Robot, stalled: tuple[str, ...], passes: bool
+) -> None:
+    tactics = Tactics(FIELD)
+    tactics.passing.stalled = stalled
+    assert (play(tactics, pressed(mate), 2 * TICK_S)[-1].skill == "pass") == passes
+
+
+def test_mate_that_stops_to_play_loses_the_pass_begun() -> None:
+    tactics = Tactics(FIELD)
+    assert play(tactics, pressed(agreed(NEAR)), 2 * TICK_S)[-1].skill == "pass"
+    absent = NEAR._replace(role=ABSENT)
+    assert play(tactics, pressed(absent), TICK_S)[-1].receiver == ""
+
+
+@pytest.mark.parametrize(("stalled", "receiver"), [((), "cyan3"), (("cyan3",), "cyan4")])
+def test_set_piece_goes_past_a_mate_that_is_out_of_order(stalled: tuple[str, ...], receiver: str) -> None:
+    tactics, spot = Tactics(FIELD), Point(-2.0, 0.0)
+    tactics.passing.stalled = stalled
+    supporter = NEAR._replace(role=SUPPORTER)
+    seen = view(PASSER, HELD, (supporter, FAR), ())
+    for stopped in (True, False):
+        game = Game(State.FREE_KICK, stopped, Whose.OURS, spot)
+        tactics.decide(seen, game, job(ATTACKER), not stopped, TICK_S)
+        assert tactics.passing.said.receiver == receiver
 
 
 def test_mate_that_does_not_answer_in_time_is_not_asked_again() -> None:

@@ -1,15 +1,17 @@
-"""Robots that should go for the ball, but stand: the team does without them for a while."""
+"""Robots that should go for the ball or elsewhere, but stand: the team does without them for a while."""
+
+from collections.abc import Mapping
 
 import pytest
 
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.posts import PLAY
-from procs.behaviour.roles import ATTACKER, SUPPORTER, assign
-from procs.behaviour.stalls import Stalls
+from procs.behaviour.roles import ATTACKER, SUPPORTER, Job, assign
+from procs.behaviour.stalls import NO_JOBS, Stalls
 from procs.behaviour.view import Ball, Robot, View
 from procs.model.field import Point
 from procs.model.game_states import State
-from tests.procs.behaviour.behaviour_parts import FIELD, agreed, ball, robot, view
+from tests.procs.behaviour.behaviour_parts import FIELD, agreed, ball, job, robot, view
 
 KEEPER, SUPPORT = robot("cyan1", -10.5, 0.0), robot("cyan3", -1.0, 2.0, role=SUPPORTER)
 HELD = robot("cyan2", 2.0, 0.0, role=ATTACKER)
@@ -21,11 +23,13 @@ def seen(attacker: Robot = HELD, where: Ball = BALL, *rivals: Robot) -> View:
     return view(SUPPORT, where, (KEEPER, attacker), rivals)
 
 
-def stalled_after(stalls: Stalls, time_s: float, what: View, game: Game = PLAY) -> frozenset[str]:
+def stalled_after(
+    stalls: Stalls, time_s: float, what: View, game: Game = PLAY, jobs: Mapping[str, Job] = NO_JOBS
+) -> frozenset[str]:
     """Returns the robots that are stalled after a time in which nothing changes."""
     found: frozenset[str] = frozenset()
     for _ in range(round(time_s / TICK_S)):
-        found = stalls.watch(what, game, FIELD, TICK_S)
+        found = stalls.watch(what, game, FIELD, TICK_S, jobs)
     return found
 
 
@@ -82,6 +86,34 @@ def test_robot_with_a_reason_to_stand_is_not_stalled(what: View) -> None:
 )
 def test_taker_of_a_set_piece_may_stand_until_the_start(game: Game, stalls: bool) -> None:
     assert bool(stalled_after(Stalls(), 5.0, seen(), game)) == stalls
+
+
+AWAY = {"cyan3": job(SUPPORTER, 5.0, 2.0)}
+PRESENT = view(HELD, BALL, (KEEPER, SUPPORT))
+
+
+def test_supporter_that_stands_far_from_its_place_is_stalled() -> None:
+    stalls = Stalls()
+    assert "cyan3" not in stalled_after(stalls, 2.0, PRESENT, PLAY, AWAY)
+    asked = view(HELD, BALL, (KEEPER, agreed(SUPPORT)))
+    assert "cyan3" not in stalled_after(stalls, 3.0, asked, PLAY, AWAY), "it stands for the pass"
+    assert "cyan3" in stalled_after(stalls, 1.0, PRESENT, PLAY, AWAY), "the time before counts on"
+    driving = view(HELD, BALL, (KEEPER, SUPPORT._replace(place=Point(-0.5, 2.0))))
+    assert "cyan3" not in stalled_after(stalls, TICK_S, driving, PLAY, AWAY)
+
+
+@pytest.mark.parametrize(
+    ("what", "game", "place"),
+    [
+        (PRESENT, PLAY, (1.5, 2.0)),
+        (PRESENT, Game(State.FROZEN, stopped=True), (5.0, 2.0)),
+        (PRESENT._replace(opponents=(robot("", -2.0, 2.0),)), PLAY, (5.0, 2.0)),
+        (PRESENT._replace(ball=Ball(known=False)), PLAY, (5.0, 2.0)),
+    ],
+    ids=["near its place", "pause", "marks a rival", "ball unknown"],
+)
+def test_helper_with_a_reason_to_stand_is_not_stalled(what: View, game: Game, place: tuple[float, float]) -> None:
+    assert "cyan3" not in stalled_after(Stalls(), 5.0, what, game, {"cyan3": job(SUPPORTER, *place)})
 
 
 def test_mate_attacks_instead_of_a_stalled_robot() -> None:
