@@ -35,6 +35,7 @@ _NEAR_M = 1.0  # the taker this near to such a ball has taken it itself
 _LEAVING_M, _GENTLE_M_S = 1.5, 1.0  # while a rival is so near to the ball, the taker comes so slowly
 _BLOCKED_S = 0.4  # a rival that drives past does not change the plan of a set piece
 _BESIDE_M = (0.2, 0.8)  # a ball laid less far from the spot lies on it; one further away is put back
+_STOPS_M_S2 = 2.8  # deceleration of a goalkeeper that drives home
 _HOME_M = 1.0  # a goalkeeper this near to its penalty area goes straight home, even at a set piece
 KEEPER_OUT_M = 2.3
 """The goalkeeper comes so far before its line."""
@@ -142,7 +143,8 @@ class Tactics:
         if game.free_play and holds_ball:
             self._drop_late_pass()
             return self._agreed(self._play.relieve(view))
-        self._fetches = game.free_play and view.ball.known and keeper_takes(view, self.field, self._fetches)
+        fetches = game.free_play and view.ball.known and keeper_takes(view, self.field, self._fetches)
+        self._fetches = fetches and (self._fetches or not _would_run_into_ball(view, self.field))
         if self._fetches:
             return self._go_for_ball(view)
         furthest_m = KEEPER_OUT_M if game.free_play else BEFORE_LINE_M
@@ -287,6 +289,15 @@ def keeper_takes(view: View, field: Field, goes_on: bool = False) -> bool:
     keeper_s = course.meet(keepers[0].place, keepers[0].velocity_m_s).time_s
     later_s = _SOONER_S + _GOES_ON_S * goes_on
     return all(keeper_s < course.meet(other.place, other.velocity_m_s).time_s + later_s for other in others)
+
+
+def _would_run_into_ball(view: View, field: Field) -> bool:
+    """Returns whether the goalkeeper comes home too fast to stop before a ball that lies nearer to the goal."""
+    own, ball, goal = view.own, view.ball, field.goal_centre(-1.0)
+    way_rad, away_m = bearing_rad(own.place, ball.place), math.dist(own.place, ball.place)
+    towards_m_s = own.velocity_m_s.x_m * math.cos(way_rad) + own.velocity_m_s.y_m * math.sin(way_rad)
+    stops_m = max(0.0, towards_m_s) ** 2 / (2 * _STOPS_M_S2)
+    return math.dist(goal, ball.place) < math.dist(goal, own.place) and stops_m > away_m - view.bodies.beside_m
 
 
 def leave_field(view: View, field: Field) -> Order:

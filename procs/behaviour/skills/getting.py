@@ -18,6 +18,7 @@ _FACING_RAD, _GOAL_FACING_RAD = 0.25, 0.45  # the mouth faces that ball, or one 
 _WAITING_M = 0.14  # from the body to the ball of a set piece until the mouth faces it ...
 _GOAL_WAITING_M = 0.25  # ... or to the ball before the own goal
 _OWN_GOAL_M, _BESIDE_GOAL_M = 0.8, 0.2  # a ball so near to the own goal, or so far beside it, may roll into it
+_PUSHED_HOME_M = 2.0  # from so near a bumped ball rolls into the own goal
 _ENTRY_M_S = 0.25  # relative to the ball, which bounces off a faster mouth
 _NEAR_M = 1.0  # so near to the ball the robot gets slower ...
 _SOFT_1_S = 2.0  # ... by this speed for each metre, because it follows its commands late
@@ -116,7 +117,7 @@ class GetBall(_Capture):
     """
 
     def _opponent_has_it(self, scene: Scene) -> bool:
-        return scene.view.is_at_ball(scene.view.opponents, HELD_M)
+        return scene.view.is_at_ball(scene.view.opponents, HELD_M) and not _would_push_it_home(scene)
 
     def _set_piece_from_beside(self, scene: Scene) -> bool:
         if not scene.set_piece:
@@ -241,6 +242,13 @@ def _is_before_own_goal(scene: Scene) -> bool:
     near = ball.place.x_m < _OWN_GOAL_M - field.half_length_m and ball.speed_m_s < _SLOW_M_S
     beside = abs(ball.place.y_m) > field.goal_width_m / 2 + _BESIDE_GOAL_M
     return near and not beside and scene.view.own.place.x_m > ball.place.x_m
+
+
+def _would_push_it_home(scene: Scene) -> bool:
+    """Returns whether the way to the other side of a ball near the own goal leads through the ball."""
+    ball, goal = scene.view.ball, scene.field.goal_centre(-1.0)
+    ball_m = math.dist(goal, ball.place)
+    return ball_m < _PUSHED_HOME_M and ball.speed_m_s < _PASSED_M_S and math.dist(goal, scene.view.own.place) > ball_m
 
 
 def _waiting(scene: Scene, off_m: float) -> Drive:

@@ -71,9 +71,9 @@ class KeepLine(StateMachine):
         heading_rad = bearing_rad(place, scene.view.ball.place) if scene.view.ball.known else 0.0
         if abs(heading_rad) > _BEHIND_RAD:  # the side of such a ball changes with its noise
             heading_rad = math.copysign(_TURNED_RAD, scene.view.own.heading_rad)
-        return Step(
-            Drive(place, clamp(heading_rad, -_TURNED_RAD, _TURNED_RAD), scene.speed_m_s), dribble=scene.holds_ball
-        )
+        heading_rad = clamp(heading_rad, -_TURNED_RAD, _TURNED_RAD)
+        drive = Drive(place, heading_rad, scene.speed_m_s, avoid_ball=_is_beyond_ball(scene))
+        return Step(drive, dribble=scene.holds_ball)
 
     def _stop_shot(self, scene: Scene, place: Point, end_speed_m_s: float = 0.0) -> Step:
         """Drives straight to the way of a shot, even past robots; a keeper far from its goal drives around them."""
@@ -131,12 +131,17 @@ class KeepGoal(KeepLine):
         return self._save is not None and self._save.spare_s > -_HOPELESS_S
 
     def _come_out(self, scene: Scene) -> Step:
-        """Covers both corners from the line between ball and goal: the nearer the ball, the further out."""
+        """Covers both corners from the line between ball and goal: the nearer the ball, the further out.
+
+        A keeper beyond the ball goes back before it.
+        """
         field, ball = scene.field, scene.view.ball.place
         goal = field.goal_centre(-1.0)
         furthest_m = max(BEFORE_LINE_M, scene.place.x_m + field.half_length_m)
         way_rad = bearing_rad(goal, ball)
         share = min(1.0, _FRONT * max(0.0, math.cos(way_rad)))
+        if _is_beyond_ball(scene):
+            furthest_m = max(BEFORE_LINE_M, min(furthest_m, math.dist(goal, ball) - scene.view.bodies.beside_m))
         out_m = clamp(share * _OUT_1_M * (_COMES_OUT_M - math.dist(goal, ball)), BEFORE_LINE_M, furthest_m)
         if out_m <= BEFORE_LINE_M or ball.x_m < -field.half_length_m + BEFORE_LINE_M:
             return self._cover(scene)
@@ -211,6 +216,12 @@ def best_save(scene: Scene) -> Save | None:
         if best is None or spare_s > best.spare_s:
             best = Save(place, spare_s, stops=ballistics.reach_s(away_m) <= time_s)
     return best
+
+
+def _is_beyond_ball(scene: Scene) -> bool:
+    """Returns whether the ball lies nearer to the own goal than the keeper, whose straight way would push it in."""
+    goal, ball = scene.field.goal_centre(-1.0), scene.view.ball
+    return ball.known and math.dist(goal, ball.place) < math.dist(goal, scene.view.own.place)
 
 
 def _dive_s(distance_m: float) -> float:
