@@ -52,11 +52,13 @@ def news(
     if now.half == halves.PENALTIES != before.half:
         drawn = before.half == halves.FOURTH and before.state in _BREAKS
         return commands + ([] if drawn else _OVERTIME_IS_DRAWN) + _stopped(now) + start
-    if now.half != before.half or _begins_again(before, now):
+    begins = now.half != before.half or _begins_again(before, now)
+    if begins:
         commands += _half(now.half)
+    whistled = begins or _piece(now) != _piece(before) or _commanded(events[before.decisions : now.decisions])
     if now.stopped and not before.stopped:
         commands += [Command("STOP"), *_stopped(now)]
-    elif before.stopped and (_piece(now) != _piece(before) or _commanded(events[before.decisions : now.decisions])):
+    elif before.stopped and whistled:
         commands += _stopped(now)
     return commands + (start if before.stopped else [])
 

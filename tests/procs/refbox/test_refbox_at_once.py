@@ -11,8 +11,8 @@ from procs.referee.referee import Referee
 from tests.procs.refbox.base_station import BaseStation
 
 
-def heard_of(*commands: str) -> list[str]:
-    """Returns what a base station hears of commands such as `goal cyan` that the referee gets in one tick of play."""
+def heard_of(*ticks: str) -> list[str]:
+    """Returns what a base station hears of commands in play; those of a tick are a text such as `stop, goal cyan`."""
     referee = Bench(Referee, "world/referee", automatic=False)
     server = Bench(RefBoxServer, "world/refbox", port=0)
 
@@ -33,7 +33,8 @@ def heard_of(*commands: str) -> list[str]:
             tick()
         tick("start")
         begun = ["WELCOME", "FIRST_HALF", "KICKOFF 1", "START"]
-        tick(*commands)
+        for commands in ticks:
+            tick(*commands.split(", "))
         tick("end_game")
         heard: list[str] = []
         while heard[-1:] != ["END_GAME"]:
@@ -62,4 +63,23 @@ def heard_of(*commands: str) -> list[str]:
     ],
 )
 def test_commands_of_a_tick_are_all_told(commands: str, told: str) -> None:
-    assert heard_of(*commands.split(", ")) == [*told.split(", "), "STOP", "END_GAME"]
+    assert heard_of(commands) == [*told.split(", "), "STOP", "END_GAME"]
+
+
+@pytest.mark.parametrize(
+    ("ticks", "told"),
+    [
+        (
+            ["half_time", "kickoff cyan", "second_half"],
+            "STOP, HALF_TIME, SECOND_HALF, KICKOFF 1, SECOND_HALF, KICKOFF 1",
+        ),
+        (["stop, kickoff magenta", "first_half"], "STOP, KICKOFF 1, KICKOFF 2, FIRST_HALF, KICKOFF 1"),
+        (
+            ["half_time, second_half", "second_half, start"],
+            "STOP, HALF_TIME, SECOND_HALF, KICKOFF 2, SECOND_HALF, KICKOFF 2, START",
+        ),
+    ],
+)
+def test_half_that_begins_again_is_told_with_its_kick_off(ticks: list[str], told: str) -> None:
+    """The other whistles of the half are void, so a base station could not know which team kicks off."""
+    assert heard_of(*ticks) == [*told.split(", "), "STOP", "END_GAME"]

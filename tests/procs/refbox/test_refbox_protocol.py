@@ -153,7 +153,8 @@ def test_reset_before_anything_happened_is_told() -> None:
     now = state(game_state_t.KICK_OFF, 1, decisions=1)
     assert [command.name for command in news(before, now, [reset])] == ["RESET", "FIRST_HALF", "KICKOFF"]
     again = state(game_state_t.KICK_OFF, 1, decisions=2)
-    assert news(before, again, [reset, kick_off]) == [Command("FIRST_HALF")], "another first half is not a reset"
+    begun = [Command("FIRST_HALF"), Command("KICKOFF", "cyan")]
+    assert news(before, again, [reset, kick_off]) == begun, "another first half is not a reset"
 
 
 def left(robot: str, reason: str, card: int = 0) -> game_event_t:
