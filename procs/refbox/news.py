@@ -49,10 +49,10 @@ def news(
     if now.state != before.state and now.state in _BREAKS:
         return commands + _break(now)
     start = [] if now.stopped else [Command("START")]
-    if now.half == halves.PENALTIES != before.half:
+    begins = now.half != before.half or _begins_again(before, now)
+    if begins and now.half == halves.PENALTIES:
         drawn = before.half == halves.FOURTH and before.state in _BREAKS
         return commands + ([] if drawn else _OVERTIME_IS_DRAWN) + _stopped(now) + start
-    begins = now.half != before.half or _begins_again(before, now)
     if begins:
         commands += _half(now.half)
     whistled = begins or _piece(now) != _piece(before) or _commanded(events[before.decisions : now.decisions])

@@ -123,6 +123,11 @@ def test_stream_is_cut_at_nul_bytes_wherever_they_arrive() -> None:
         ),
         (state(game_state_t.FROZEN, half=4), state(game_state_t.PENALTY, 2, half=5), ["PENALTY magenta"]),
         (
+            state(game_state_t.FROZEN, half=5, score_cyan=1),
+            state(game_state_t.PENALTY, 2, half=5, score_cyan=1),
+            ["SECOND_HALF_OVERTIME", "STOP", "END_GAME", "PENALTY magenta"],
+        ),  # after GAMEOVER, which nothing follows
+        (
             state(game_state_t.THROW_IN, 1, half=2, time_in_half_s=9.0),
             state(game_state_t.KICK_OFF, 2, half=2),
             ["SECOND_HALF", "KICKOFF magenta"],
