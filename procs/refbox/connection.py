@@ -61,9 +61,11 @@ class Connection:
             return []
         try:
             return self._inbox.take()
-        except (EOFError, OSError, ProtocolError) as error:
+        except ProtocolError as error:
+            self._log.warning(f"RefBox: {error}; dropped")
+        except (EOFError, OSError) as error:
             self._lose(str(error))
-            return []
+        return []
 
     def send(self, data: bytes) -> None:
         """Sends a message as fast as the RefBox reads; it has to be `ready`."""

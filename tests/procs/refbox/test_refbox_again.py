@@ -1,0 +1,25 @@
+"""Connections of a RefBox that go on after nonsense, and those that are made again."""
+
+import socket
+
+from fwk.testing import Bench
+from procs.refbox.client import RefBoxClient
+from procs.refbox.protocol import LONGEST
+from tests.procs.refbox.base_station import say
+
+
+def test_client_obeys_a_command_behind_too_long_a_message() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as refbox:
+        refbox.settimeout(5.0)
+        bench = Bench(RefBoxClient, "world/refbox", port=refbox.getsockname()[1])
+        bench.iterate()
+        connection, _ = refbox.accept()
+        with connection:
+            connection.sendall(b"x" * (LONGEST + 1) + b"\0" + say("STOP"))
+            for _ in range(1000):
+                bench.iterate()
+                if bench.port("referee_command").sent:
+                    break
+    bench.finalize()
+    assert [each.name for each in bench.port("referee_command").sent] == ["stop"]
+    assert [line.text for line in bench.logged[1:]] == [f"RefBox: more than {LONGEST} bytes without a NUL; dropped"]
