@@ -35,7 +35,8 @@ class ServerConfig(Config):
 class RefBoxServer(Component):
     """Sends each base station what led to the state of the game, then every decision in the tick in which it is made.
 
-    First come the half, the goals, the cards, the robots off the field, and the break or the set piece at hand.
+    First come a reset, so that a base station that comes back counts no goal twice, the half, the goals, the cards, the
+    robots off the field, and the break or the set piece at hand.
 
     The reports of base stations are checked and counted. A base station that leaves, or does not read what it is sent,
     is cut off: no base station can hold the game up. One that has ended its side of the connection may still listen: it
@@ -76,7 +77,8 @@ class RefBoxServer(Component):
             self._before, self._events = now, events
         newcomers = self._admit()
         if self._before is not None:
-            self._send([Command("WELCOME"), *news(None, self._before, self._events, self.config.players)], newcomers)
+            led_here = news(None, self._before, self._events, self.config.players)
+            self._send([Command("WELCOME"), Command("RESET"), *led_here], newcomers)
 
     def _told(self) -> list[tuple[game_state_t, list[game_event_t]]]:
         """Returns the states since the last iteration with their histories: one of each tick, and of each command."""

@@ -1,11 +1,14 @@
 """Connections of a RefBox that go on after nonsense, and those that are made again."""
 
+import contextlib
 import socket
 
 from fwk.testing import Bench
+from lcmtypes.soccer import game_state_t
 from procs.refbox.client import RefBoxClient
 from procs.refbox.protocol import LONGEST
-from tests.procs.refbox.base_station import say
+from procs.refbox.server import RefBoxServer
+from tests.procs.refbox.base_station import BaseStation, say
 
 
 def test_client_obeys_a_command_behind_too_long_a_message() -> None:
@@ -23,3 +26,15 @@ def test_client_obeys_a_command_behind_too_long_a_message() -> None:
     bench.finalize()
     assert [each.name for each in bench.port("referee_command").sent] == ["stop"]
     assert [line.text for line in bench.logged[1:]] == [f"RefBox: more than {LONGEST} bytes without a NUL; dropped"]
+
+
+def test_station_that_comes_back_counts_no_goal_twice() -> None:
+    server = Bench(RefBoxServer, "world/refbox", port=0)
+    heard: list[str] = []
+    for _ in range(2):
+        with contextlib.closing(BaseStation(server.component.port)) as station:
+            server.port("game_state").put(state=game_state_t.DROP_BALL, half=1, stopped=True, score_cyan=1)
+            server.iterate(2)
+            heard += [each["command"] for each in station.heard(5)]
+    server.finalize()
+    assert heard == ["WELCOME", "RESET", "FIRST_HALF", "GOAL", "DROP_BALL"] * 2

@@ -32,7 +32,7 @@ def heard_of(*ticks: str) -> list[str]:
         for _ in range(3):
             tick()
         tick("start")
-        begun = ["WELCOME", "FIRST_HALF", "KICKOFF 1", "START"]
+        begun = ["WELCOME", "RESET", "FIRST_HALF", "KICKOFF 1", "START"]
         for commands in ticks:
             tick(*commands.split(", "))
         tick("end_game")
@@ -42,8 +42,8 @@ def heard_of(*ticks: str) -> list[str]:
             robot = f" {each['robotID']}" if "robotID" in each else ""
             heard.append(f"{each['command']} {each['targetTeam'][-1:]}{robot}".strip())
     server.finalize()
-    assert heard[:4] == begun
-    return heard[4:]
+    assert heard[:5] == begun
+    return heard[5:]
 
 
 @pytest.mark.parametrize(

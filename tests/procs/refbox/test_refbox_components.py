@@ -47,7 +47,7 @@ def names(messages: list[dict[str, Any]]) -> list[tuple[str, str]]:
 def test_base_station_hears_where_the_game_is_and_what_follows(server: Bench) -> None:
     with contextlib.closing(BaseStation(server.component.port)) as station:
         show(server, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, True)
-        assert names(station.heard(3)) == [("WELCOME", ""), ("FIRST_HALF", ""), ("KICKOFF", CYAN)]
+        assert names(station.heard(4)) == [("WELCOME", ""), ("RESET", ""), ("FIRST_HALF", ""), ("KICKOFF", CYAN)]
         show(server, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, False)
         show(server, game_state_t.PLAY, game_state_t.TEAM_NONE, False)
         show(server, game_state_t.CORNER_KICK, game_state_t.TEAM_MAGENTA, True)
@@ -82,7 +82,7 @@ def test_server_turns_away_more_stations_than_it_serves() -> None:
             open_until_the_end.enter_context(contextlib.closing(each))
         show(bench, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, True)
         show(bench, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, False)
-        assert [len(each.heard(4)) for each in stations[:2]] == [4, 4]
+        assert [len(each.heard(5)) for each in stations[:2]] == [5, 5]
         with pytest.raises(AssertionError, match="closed the connection"):
             stations[2].heard(1)
         assert any("is turned away: 2 are connected" in line.text for line in bench.logged)
@@ -93,7 +93,7 @@ def test_server_is_deaf_to_what_stations_say(server: Bench) -> None:
         show(server, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, True)
         station.say(b"\0\xff[[[{" * 20_000)
         show(server, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, False)
-        assert names(station.heard(4))[-1] == ("START", "")
+        assert names(station.heard(5))[-1] == ("START", "")
 
 
 def test_client_leads_the_referee(refbox: socket.socket) -> None:
@@ -152,7 +152,7 @@ def test_command_by_hand_is_told_by_its_name(
     with contextlib.closing(BaseStation(server.component.port)) as station:
         for _ in range(3):
             tick()
-        station.heard(3)
+        station.heard(4)
         if in_break:
             tick(name="half_time")
             station.heard(2)
@@ -359,7 +359,7 @@ def test_card_is_sent_with_the_number_of_the_player() -> None:
         for kind in (game_state_t.PLAY, game_state_t.PLAY, game_state_t.HALF_TIME):  # one new event
             bench.port("game_state").put(state=kind, half=1, decisions=1)
             bench.iterate()
-        heard = station.heard(6)[3:]
+        heard = station.heard(7)[4:]
         assert heard[0] == {"command": "RED_CARD", "targetTeam": MAGENTA, "robotID": 7}
         assert [each["command"] for each in heard] == ["RED_CARD", "STOP", "HALF_TIME"]
     bench.finalize()
@@ -372,7 +372,8 @@ def test_newcomer_hears_of_score_break_and_players() -> None:
             state=game_state_t.HALF_TIME, half=1, stopped=True, score_cyan=1, n_sent_off=1, sent_off=["anna"]
         )
         bench.iterate()
-        heard = station.heard(6)
-        assert [each["command"] for each in heard] == ["WELCOME", "FIRST_HALF", "GOAL", "REPAIR", "STOP", "HALF_TIME"]
-        assert heard[3] == {"command": "REPAIR", "targetTeam": MAGENTA, "robotID": 7}
+        heard = station.heard(7)
+        told = ["WELCOME", "RESET", "FIRST_HALF", "GOAL", "REPAIR", "STOP", "HALF_TIME"]
+        assert [each["command"] for each in heard] == told
+        assert heard[4] == {"command": "REPAIR", "targetTeam": MAGENTA, "robotID": 7}
     bench.finalize()

@@ -332,7 +332,7 @@ def test_half_closed_station_is_heard_and_still_told() -> None:
         assert any("reports the world state of 'A'" in line.text for line in server.logged)
         server.port("game_state").put(state=game_state_t.DROP_BALL, half=1, stopped=True)
         server.iterate()
-        assert [each["command"] for each in station.heard(5)][-2:] == ["STOP", "DROP_BALL"]
+        assert [each["command"] for each in station.heard(6)][-2:] == ["STOP", "DROP_BALL"]
     for stopped in (False, True, False, True):
         server.port("game_state").put(state=game_state_t.DROP_BALL, half=1, stopped=stopped)
         server.iterate()
