@@ -44,7 +44,7 @@ def call(
 ) -> None:
     """Sends a command or a request to the component that carries it out, and shows its answers.
 
-    Exit codes: 0 done, or accepted with --accepted; 1 not done; 2 it could not be sent.
+    Exit codes: 0 done, or accepted with --accepted; 1 not done, or no run answers; 2 it could not be sent.
     """
     wanted = ("done", "accepted") if accepted else ("done",)
     with asking():
