@@ -59,7 +59,8 @@ def mistake_in(name: str, team: str, robot: str, robots: Collection[str], names:
         if robot and robot not in robots:
             return f"no robot '{robot}'; there are {there}"
         if robot and team and team_number(names.of_player(robot)) is not TEAMS[team]:
-            return f"{robot} does not play for {team}"
+            plays = team_number(names.of_player(robot)).name.lower()
+            return f"{robot} plays for {plays}, not for {team}"
     return ""
 
 
@@ -116,7 +117,8 @@ def _goal(match: Match, team: Team, more: bool) -> str:
         match.goal(team)
         match.interrupt(restarts.kick_off(team.other))
     elif match.score[team] == 0:
-        return f"{team.name.lower()} has no goal to take back"
+        cyan, magenta = match.score[Team.CYAN], match.score[Team.MAGENTA]
+        return f"{team.name.lower()} has no goal to take back; the score is cyan {cyan}:{magenta} magenta"
     else:
         match.take_back(team)
     return ""
@@ -125,7 +127,10 @@ def _goal(match: Match, team: Team, more: bool) -> str:
 def _robot(match: Match, sight: Sight, name: str, team: Team, namespace: str, names: Names) -> str:
     robot = names.of_player(namespace) if namespace else _chosen(match, sight, name, team)
     if not robot:
-        return f"no robot of {team.name.lower()} is on the field"
+        off = ", ".join(names.namespaces(sight.team(team)))
+        return f"no robot of {team.name.lower()} is on the field" + (
+            off and f"; a robot that is off it has to be named: {off}"
+        )
     if name in CARDS:
         match.card(robot, CARDS[name])
     else:

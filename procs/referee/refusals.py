@@ -29,23 +29,19 @@ def begun_by(match: Match, name: str) -> int | None:
 
     A drawn match that has ended goes on in the same way.
     """
-    drawn = match.score[Team.CYAN] == match.score[Team.MAGENTA]
-    goes_on = match.state is State.HALF_TIME or (match.over and drawn and match.half in (halves.SECOND, halves.FOURTH))
     following = match.half + 1
-    return following if goes_on and name == ("penalty" if following == halves.PENALTIES else "kickoff") else None
+    begins = name == ("penalty" if following == halves.PENALTIES else "kickoff")
+    return following if begins and _goes_on(match) else None
 
 
 def why_not(match: Match, name: str, team: Team) -> str:
     """Returns why a command makes no sense now, and what would; an empty text if it does."""
-    if name == "start" and (not match.stopped or match.at_rest):
-        return "nothing to start: the game runs, or has a break"
+    if name == "start" and not match.stopped:
+        return "nothing to start: the game runs; stop or a set piece interrupts it"
     if begun_by(match, name):
         return ""
-    if name in SET_PIECES or name in ("drop_ball", "half_time"):
-        if match.over:
-            return f"no {_words(name)} after the end of the match; reset begins another match"
-        if match.state is State.HALF_TIME:
-            return f"no {_words(name)} in a break; {_NEXT[match.half]}"
+    if match.at_rest and (name in SET_PIECES or name in ("start", "drop_ball", "half_time")):
+        return f"no {_words(name)} {_why_not_at_rest(match)}"
     if name == "half_time" and not halves.after(match.half, match.score, match.rules):
         return "no half time: no other half follows; end_game ends the match"
     if match.shootout and not match.over:
@@ -60,9 +56,26 @@ def _why_not_between_penalties(match: Match, name: str, team: Team) -> str:
     if name == "drop_ball" or (name in SET_PIECES and name != "penalty"):
         return f"no {_words(name)} while penalties decide the match; penalty team={whose} repeats the one at hand"
     if name == "goal" and team is shooter.other:
-        return f"{team.name.lower()} cannot score: the penalty is that of {whose}"
+        other = team.name.lower()
+        return f"{other} cannot score: the penalty is that of {whose}; penalty team={other} gives {other} one"
     return ""
 
 
+def _goes_on(match: Match) -> bool:
+    """Returns whether another half may follow the break or the end of the match that is at hand."""
+    if match.half in (halves.SECOND, halves.FOURTH):
+        return match.at_rest and match.score[Team.CYAN] == match.score[Team.MAGENTA]
+    return match.state is State.HALF_TIME
+
+
+def _why_not_at_rest(match: Match) -> str:
+    goes_on = _goes_on(match)
+    if match.over:
+        others = f"{_NEXT[match.half]}, reset another match" if goes_on else "reset begins another match"
+        return f"after the end of the match; {others}"
+    return f"in a break; {_NEXT[match.half] if goes_on else 'end_game ends the match, which is decided'}"
+
+
 def _words(name: str) -> str:
-    return (SET_PIECES | {"drop_ball": State.DROP_BALL, "half_time": State.HALF_TIME})[name].words
+    states = SET_PIECES | {"drop_ball": State.DROP_BALL, "half_time": State.HALF_TIME}
+    return states[name].words if name in states else name

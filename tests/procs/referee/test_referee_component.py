@@ -123,11 +123,11 @@ def test_stop_by_hand_holds_the_game_until_start() -> None:
     [
         ({"name": "freekick"}, "'freekick' needs a team: cyan or magenta"),
         ({"name": "freekick", "team": "red"}, "no team 'red'; there are cyan, magenta"),
-        ({"name": "subgoal", "team": "cyan"}, "cyan has no goal to take back"),
+        ({"name": "subgoal", "team": "cyan"}, "cyan has no goal to take back; the score is cyan 0:0 magenta"),
         ({"name": "yellow_card", "robot": "cyan9"}, "no robot 'cyan9'; there are none"),
         ({"name": "red_card"}, "'red_card' needs a team or a robot; there are none"),
         ({"name": "red_card", "team": "cyan"}, "no robot of cyan is on the field"),
-        ({"name": "start"}, "nothing to start: the game runs, or has a break"),
+        ({"name": "start"}, "nothing to start: the game runs; stop or a set piece interrupts it"),
     ],
 )
 def test_impossible_command_by_hand(asked: dict[str, str], reason: str) -> None:
@@ -291,7 +291,7 @@ def test_robot_of_the_other_team_is_not_the_one_meant() -> None:
     bench = with_names()
     bench.port("referee_command").put(name="yellow_card", team="cyan", robot="dora")
     bench.iterate()
-    assert bench.port("referee_command").sent[-1].answer.reason == "dora does not play for cyan"
+    assert bench.port("referee_command").sent[-1].answer.reason == "dora plays for magenta, not for cyan"
     assert not [event for event in history(bench) if event.card]
 
 
@@ -320,7 +320,8 @@ def test_command_for_a_team_means_its_highest_number_on_field() -> None:
         assert state(bench).sent_off == expected
     bench.port("referee_command").put(name="repair", team="cyan")
     bench.iterate()
-    assert bench.port("referee_command").sent[-1].answer.reason == "no robot of cyan is on the field"
+    refused = "no robot of cyan is on the field; a robot that is off it has to be named: anna, bert"
+    assert bench.port("referee_command").sent[-1].answer.reason == refused
     shown = [(event.robot, event.card) for event in history(bench) if event.card]
     assert shown == [
         ("dora", game_event_t.YELLOW),

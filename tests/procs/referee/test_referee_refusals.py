@@ -61,9 +61,38 @@ def test_refusals_name_the_set_piece() -> None:
     assert ask(in_break(), "freekick", "cyan").startswith("no free kick in")
 
 
-def test_nothing_starts_in_a_break_or_after_the_end() -> None:
-    for script in (ended(), in_break()):
-        assert ask(script, "start") == "nothing to start: the game runs, or has a break"
+def test_refused_start_says_what_to_do_instead() -> None:
+    assert ask(Script().playing(), "start") == "nothing to start: the game runs; stop or a set piece interrupts it"
+    assert ask(in_break(), "start") == "no start in a break; second_half begins the next half"
+    assert ask(ended(), "start") == "no start after the end of the match; reset begins another match"
+
+
+@pytest.mark.parametrize(
+    ("half", "following"),
+    [
+        ("second_half", "first_half_overtime begins the overtime"),
+        ("second_half_overtime", "penalties begins the deciding penalties"),
+    ],
+)
+def test_refusal_after_a_draw_names_what_may_follow(half: str, following: str) -> None:
+    script = Script()
+    ask(script, half)
+    ask(script, "end_game")
+    assert ask(script, "drop_ball").endswith(f" after the end of the match; {following}, reset another match")
+    ask(script, "goal", "cyan")
+    assert ask(script, "drop_ball").endswith(" after the end of the match; reset begins another match")
+
+
+@pytest.mark.parametrize(("half", "command"), [("second_half", "kickoff"), ("second_half_overtime", "penalty")])
+def test_break_of_a_decided_match_leads_to_its_end(half: str, command: str) -> None:
+    """A goal was counted in the break that a draw has led to."""
+    script = Script(decide=True, half_time_s=60.0)
+    for name, team in ((half, ""), ("half_time", ""), ("goal", "magenta")):
+        assert ask(script, name, team) == ""
+    assert ask(script, command, "cyan").endswith(" in a break; end_game ends the match, which is decided")
+    assert script.state == (State.HALF_TIME, 0, True)
+    ask(script, "goal", "cyan")
+    assert ask(script, command, "cyan") == ""
 
 
 def test_score_is_corrected_without_a_kick_off_in_a_break() -> None:
@@ -94,7 +123,8 @@ def test_goal_by_hand_is_that_of_the_penalty_at_hand() -> None:
     assert ask(script, "goal", "cyan") == ""
     assert (script.state, script.score) == ((State.PENALTY, MAGENTA, True), (1, 0))
     assert counted(script) == ([1, 0], [1, 0])
-    assert ask(script, "goal", "cyan") == "cyan cannot score: the penalty is that of magenta"
+    refused = "cyan cannot score: the penalty is that of magenta; penalty team=cyan gives cyan one"
+    assert ask(script, "goal", "cyan") == refused
     assert ask(script, "goal", "magenta") == ""
     assert (script.score, counted(script)) == ((1, 1), ([1, 1], [1, 1]))
 

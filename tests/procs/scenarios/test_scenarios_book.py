@@ -113,7 +113,7 @@ def test_file_that_cannot_be_read_is_named(
 def test_command_that_is_refused_breaks_a_scenario(tmp_path: Path) -> None:
     text = "dummies: [cyan2]\ncommands: [{referee: {name: subgoal, team: cyan}}]\nalways: [x(cyan2) < 0]\ntime_s: 0.3\n"
     (refused,) = run(written(tmp_path, text)).broken
-    assert refused == "refused: the command at 0 s: cyan has no goal to take back"
+    assert refused == "refused: the command at 0 s: cyan has no goal to take back; the score is cyan 0:0 magenta"
 
 
 def test_command_has_nothing_of_the_one_before(tmp_path: Path) -> None:

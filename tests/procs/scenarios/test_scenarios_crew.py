@@ -208,4 +208,6 @@ def test_command_that_is_refused_later_is_logged() -> None:
     ask(system, text=text)
     system.tick(60)
     assert answers(system)[-1] == (answer_t.DONE, "")
-    assert "refused: the command at 0.5 s: cyan has no goal to take back" in logged(system)
+    assert "refused: the command at 0.5 s: cyan has no goal to take back; the score is cyan 0:0 magenta" in logged(
+        system
+    )

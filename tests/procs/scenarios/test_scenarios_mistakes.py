@@ -235,7 +235,7 @@ from tests.procs.scenarios.scenario_files import written
         (
             "robots: [cyan1]\ncommands: [{referee: {name: red_card, robot: cyan1, team: magenta}}]",
             ScenarioError,
-            "commands.0: referee: cyan1 does not play for magenta",
+            "commands.0: referee: cyan1 plays for cyan, not for magenta",
         ),
         ("commands: [{at_s: '1', reset: {}}]", ScenarioError, "'commands.0.at_s' is '1'; it should be a valid number"),
         (
