@@ -16,6 +16,7 @@ from procs.model.frames import Floats
 from procs.model.units import US_PER_S
 
 _STALE_S = 0.2  # older sightings of a robot are not averaged
+_AGAIN_S = 1.0  # a robot has so long to find the ball again, or its loss does not count
 
 
 class _Sighting(NamedTuple):
@@ -42,15 +43,19 @@ def team_ball(piece: Piece) -> Samples:
 
 
 def _known(piece: Piece) -> Samples:
-    """Returns whether a robot of each team knows the ball, by tick, and how long each robot did not know it."""
+    """Returns whether a robot of each team knows the ball, by tick, and how long each robot did not know it.
+
+    A loss that the piece ends within `_AGAIN_S` does not count, found again or not: otherwise short ones alone would.
+    """
     teams: dict[tuple[str, int], bool] = defaultdict(bool)
     lost_s: list[float] = []
     since: dict[str, int] = {}
     was_known: dict[str, bool] = defaultdict(bool)
+    latest = max(piece.truth) - round(_AGAIN_S / piece.period_s)
     for robot, tick, model, _ in models_of(piece):
         known = bool(model.ball.known)
         teams[piece.team(robot), tick] |= known
-        if was_known[robot] and not known:
+        if was_known[robot] and not known and tick <= latest:
             since[robot] = tick
         elif known and robot in since:
             lost_s.append((tick - since.pop(robot)) * piece.period_s)

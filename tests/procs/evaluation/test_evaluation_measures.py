@@ -155,6 +155,19 @@ def test_ball_that_one_robot_knows_is_known_to_its_team() -> None:
     assert found["ball lost, until known again"].tolist() == pytest.approx([0.5, math.inf])
 
 
+@pytest.mark.parametrize(
+    ("lost", "found", "counts"), [(39, 40, []), (25, 30, []), (19, 40, [math.inf]), (19, 39, [1.0])]
+)
+def test_ball_lost_just_before_the_end_does_not_count(lost: int, found: int, counts: list[float]) -> None:
+    """Whether it is found in time is unknown, and short losses alone would show otherwise."""
+    made = piece([robot("cyan1", 0.0, 1.0)])
+    models = {tick: model((0.0, 0.0)) for tick in made.truth}
+    made.by_robot["world_model"] = {"cyan1": models}
+    for tick in range(FIRST + lost, FIRST + found):
+        models[tick].ball.known = False
+    assert samples_of(made)["ball lost, until known again"].tolist() == pytest.approx(counts)
+
+
 def test_kick_delay_ends_when_the_velocity_is_known() -> None:
     made = piece([robot("cyan1", 0.0, 1.0)], vx_m_s=5.0)
     made.events[FIRST] = [event(match_event_t.KICK, "cyan1", 5.0)]
