@@ -22,6 +22,7 @@ from fwk.lcm.type_registry import put_first, use_types_of
 from fwk.model.errors import some
 from fwk.plan.classes import find_object
 from fwk.plan.what_ran import hash_of_module
+from fwk.testing.differing import differing
 from fwk.testing.executors import CampaignError
 
 Work = Callable[..., Any]
@@ -125,19 +126,23 @@ class Campaign:
         folder.mkdir(parents=True, exist_ok=True)
         self._codes = _codes_in(folder / _CODE)
         """Code that each seed's result is of."""
-        note, text = folder / "campaign.json", json.dumps(dict(about), sort_keys=True)
+        self._about = dict(about)
+        note, text = folder / "campaign.json", json.dumps(self._about, sort_keys=True)
         old = _read(note)
         if old is None:
             _write(note, text)
         elif (flaw := _flaw_of(old, _flaw_in_note)) and old != text.encode():
             cure = "remove it if the results beside it are of this launch file and its settings"
             raise FolderError(f"{note} is damaged: {flaw}; {cure}, or choose another folder")
-        elif (differ := _differing(json.loads(old), json.loads(text))) and not self._began_anew(note, text):
-            raise FolderError(f"{folder} holds another campaign: {differ}; choose another folder")
+        elif (differ := differing(json.loads(old), json.loads(text))) and not self._began_anew(note, text):
+            raise self._other(differ)
+
+    def _other(self, differ: str) -> FolderError:
+        return FolderError(f"{self._folder} holds another campaign: {differ}; choose another folder")
 
     def _began_anew(self, note: Path, text: str) -> bool:
         """Begins this campaign in the place of another that has no result and is not played; returns whether it did."""
-        with suppress(CampaignError), self.alone():
+        with suppress(CampaignError), self._locked():
             if not any(self._folder.glob("seed-*.json")):
                 _write(note, text)
                 return True
@@ -174,7 +179,18 @@ class Campaign:
 
         Raises:
             CampaignError: another process plays into it.
+            FolderError: another campaign has begun in it since this one was opened.
         """
+        with self._locked():
+            note = _read(self._folder / "campaign.json")
+            whole = json.loads(note) if note and not _flaw_of(note, _flaw_in_note) else self._about
+            if differ := differing(whole, self._about):
+                raise self._other(differ)
+            yield
+
+    @contextmanager
+    def _locked(self) -> Iterator[None]:
+        """Locks the folder."""
         opened = os.open(self._folder, os.O_RDONLY)
         try:
             fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -246,25 +262,6 @@ class Campaign:
 def _flaw_in_note(value: Any) -> str:
     """Returns why a value is not what is stated about a campaign, or an empty text."""
     return "" if isinstance(value, dict) else "it is no JSON object"
-
-
-def _differing(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:
-    """Returns how another campaign differs from this one: `time_s is 60.0 there, 30.0 here`; empty if it does not.
-
-    The same settings that lead to the same plan are no difference, in whatever order they were typed.
-    """
-    keys = [key for key in {**old, **new} if old.get(key) != new.get(key)]
-    if not keys or (keys == ["sets"] and _sorted(old.get("sets")) == _sorted(new.get("sets"))):
-        return ""
-    shown = [key for key in keys if key != "plan"]  # a digest, which settings change, too
-    if not shown:
-        return "its launch file had other components or settings"
-    return ", ".join(f"{key} is {json.dumps(old.get(key))} there, {json.dumps(new.get(key))} here" for key in shown)
-
-
-def _sorted(values: Any) -> list[str]:
-    """Returns the values of a list in an order of their own; of anything else itself."""
-    return sorted(map(str, values)) if isinstance(values, list) else [str(values)]
 
 
 def _outcome(future: Future[Any]) -> tuple[str, str]:

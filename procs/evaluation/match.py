@@ -37,7 +37,7 @@ def measured(
     period_s = plan.period_us / 1e6
     ticks = round(time_s / period_s)
     if not ticks:
-        raise ValueError(f"{time_s:g} s is shorter than a tick of {period_s:g} s")
+        raise ValueError(f"--time {time_s:g} is shorter than a tick; it should be {period_s:g} s at least")
     system = system_of(file, seed=seed, sets=sets)
     system.tick(ticks)
     robot = _robot_of(each.config for each in plan.components if each.namespace == "world")

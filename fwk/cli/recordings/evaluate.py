@@ -91,7 +91,7 @@ def eval(  # noqa: A001 - the name of the command
     if cause := _refusal(plan, sets or (), time_s):
         raise _bad_input(cause)
     time_s = _RUN_S if time_s is None else time_s
-    about = {"file": os.path.normpath(plan.file), "time_s": time_s, "by": plan.evaluation, "plan": _digest(plan)}
+    about = {"file": os.path.normpath(plan.file), "time_s": time_s, "by": plan.evaluation, **_digests(plan)}
     work = Evaluation(plan.evaluation, plan.folders, tuple(sets or ()), modules if cluster else {})
     try:
         code = _short(sorted((modules | _inputs(plan)).items()))
@@ -273,13 +273,17 @@ def _refused_by(folder: Path) -> Iterator[None]:
         raise FolderError(f"--out {error.filename or folder}: {reason}") from error
 
 
-def _digest(plan: Plan) -> str:
-    """Returns a digest of stages and components with all of their settings: runs of others are not mixed in."""
+def _digests(plan: Plan) -> dict[str, str]:
+    """Returns a digest of stages and components with all of their settings, and one of the run's own settings.
+
+    Runs of other components are not mixed in. The settings of the run tell whether those typed with --set do the same.
+    """
     played = [
         (each.name, each.module, each.class_name, each.config, each.channels, each.every, each.offset)
         for each in plan.components
     ]
-    return _short((plan.period_us, plan.stages, played))
+    paced = (plan.clock, plan.speed, plan.stage_time_us, plan.loop_time_us, plan.loop_time_warnings, plan.public_url)
+    return {"plan": _short((plan.period_us, plan.stages, played)), "run": _short(paced)}
 
 
 def _short(value: Any) -> str:

@@ -51,3 +51,11 @@ def test_cure_fits_what_keeps_a_file_from_being_written(
     with pytest.raises(FolderError) as raised:
         Campaign(tmp_path, {})
     assert str(raised.value) == f"{tmp_path}/campaign.json cannot be written: {os.strerror(number)}; {cure}"
+
+
+def test_folder_that_another_campaign_took_meanwhile_is_named(tmp_path: Path) -> None:
+    """Of two evaluations that begin in the same moment one keeps the folder; no result lies under another's note."""
+    first = Campaign(tmp_path, {"file": "it", "time_s": 4.0})
+    Campaign(tmp_path, {"file": "it", "time_s": 3.0})
+    with pytest.raises(FolderError, match="another campaign: --time is 3 there, 4 here; choose"), first.alone():
+        pytest.fail("it would play")

@@ -32,7 +32,7 @@ def test_report_of_two_short_pieces(tmp_path: Path) -> None:
 
 
 def test_piece_without_a_tick_fails() -> None:
-    with pytest.raises(ValueError, match=r"0\.01 s is shorter than a tick of 0\.04 s"):
+    with pytest.raises(ValueError, match=r"^--time 0\.01 is shorter than a tick; it should be 0\.04 s at least$"):
         measured("soccer-truth.yaml", 0.01, 1)
 
 
