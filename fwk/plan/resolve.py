@@ -11,6 +11,7 @@ from fwk.model.errors import Problems, hint
 from fwk.model.selection import dot_for_slash, matches, nearest
 from fwk.plan.classes import UnusableError, find_class
 from fwk.plan.files.launch_file import Files
+from fwk.plan.files.overrides import SHARED
 from fwk.plan.files.settings import effective
 from fwk.plan.files.source import Node
 from fwk.plan.files.substitution import substitute
@@ -62,7 +63,10 @@ def add_settings(files: Files, components: Sequence[Asked], problems: Problems) 
             node = layer.node.at("config", pattern)
             meant = [asked for asked in components if matches(asked.name, pattern)]
             if not meant and not files.may_hide(pattern):
-                problems.add(node.place, "", f"no component '{pattern}'; {nearest(pattern, names)}")
+                right = (
+                    f"write '{SHARED}:' beside 'config:', not in it" if pattern == SHARED else nearest(pattern, names)
+                )
+                problems.add(node.place, "", f"no component '{pattern}'; {right}")
             if isinstance(node.value, dict) and (wrong := dot_for_slash(pattern, node.value, names)):
                 problems.add(node.place, "", wrong)
                 continue

@@ -244,6 +244,13 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """,
     ),
     Broken(
+        "it.yaml:2: no component 'shared'; write 'shared:' beside 'config:', not in it",
+        """
+        components: {it/a: {use: plan_parts:Odometer}}
+        config: {shared: {gain: 1}}
+        """,
+    ),
+    Broken(
         """
         --set: 'it/a.key' is not a PATH=VALUE; write for example cyan1/omni_ball.gain=0.5
         --set: no setting 'seeed'; did you mean 'seed'?
