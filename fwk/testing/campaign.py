@@ -89,8 +89,11 @@ class Evaluation:
 class Results(Sequence[Any]):
     """Results of runs, each read from its file when it is asked for: together they may fill the memory."""
 
-    def __init__(self, files: Sequence[Path]) -> None:
-        self._files = files
+    def __init__(self, files: Mapping[int, Path]) -> None:
+        """Takes the file of each seed's result."""
+        self.seeds = list(files)
+        """Seed of each result."""
+        self._files = list(files.values())
 
     def __len__(self) -> int:
         return len(self._files)
@@ -101,7 +104,7 @@ class Results(Sequence[Any]):
     def __getitem__(self, index: slice) -> "Results": ...
     def __getitem__(self, index: int | slice) -> Any:
         if isinstance(index, slice):
-            return Results(self._files[index])
+            return Results(dict(zip(self.seeds[index], self._files[index], strict=True)))
         return json.loads(self._files[index].read_text())
 
 
@@ -211,7 +214,7 @@ class Campaign:
         Raises:
             FolderError: a result cannot be read.
         """
-        return Results([self._file(seed) for seed in seeds if not self._flaw(seed)])
+        return Results({seed: self._file(seed) for seed in seeds if not self._flaw(seed)})
 
     def play(
         self, work: Work, file: str, time_s: float, seeds: Iterable[int], executor: Executor

@@ -69,8 +69,9 @@ def _play_once(scenarios: Mapping[Path, Scenario]) -> int:
             traceback.print_exc()
             verdict = Verdict(broken=[f"{type(error).__name__}: {error}"])
         failed += not verdict.ok
+        judged = f"ok     {path.stem}" if verdict.ok else f"failed {path.stem}, seed {scenario.seed}"
         print(
-            f"{'ok    ' if verdict.ok else 'failed'} {path.stem} ({verdict.time_s:.1f} s)",
+            f"{judged} ({verdict.time_s:.1f} s)",
             *verdict.broken,
             sep="\n       ",
         )

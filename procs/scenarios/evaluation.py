@@ -1,10 +1,12 @@
 """Evaluation of the book of scenarios for `fwk eval`: plays each scenario once with a seed, and reports all seeds."""
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from fwk.testing import ExpressionError
+from fwk.testing.campaign import listed
 from procs.evaluation.intervals import wilson
 from procs.evaluation.report_files import write_report
 from procs.evaluation.table import Row, as_text
@@ -75,13 +77,25 @@ def flaw_in(result: Any) -> str:
     return "" if whole else "it should hold a list of texts for each scenario"
 
 
-def report(results: Sequence[Mapping[str, Sequence[str]]], folder: Path) -> str:
-    """Writes table.csv and table.json into the folder, and measures.png if matplotlib is there; returns the table."""
+def report(results: Sequence[Mapping[str, Sequence[str]]], folder: Path, seeds: Sequence[int] = ()) -> str:
+    """Writes table.csv and table.json into the folder, and measures.png if matplotlib is there; returns the table.
+
+    Conditions that do not hold follow the table, with those of the `seeds` of the results with which they do not.
+    """
     names = sorted({name for result in results for name in result})
     outcomes = {name: [not result[name] for result in results if name in result] for name in names}
     rows = rows_of(outcomes)
-    broken = sorted({f"{name}: {text}" for result in results for name, texts in result.items() for text in texts})
-    return "\n".join(filter(None, (as_text(rows), *broken, write_report(rows, folder))))
+    broken: dict[tuple[str, str], list[int]] = defaultdict(list)
+    for place, result in enumerate(results):
+        for name, text in ((name, text) for name, texts in result.items() for text in dict.fromkeys(texts)):
+            broken[name, text] += seeds[place : place + 1]
+    lines = [f"{name}{_with(failed)}: {text}" for (name, text), failed in sorted(broken.items())]
+    return "\n".join(filter(None, (as_text(rows), *lines, write_report(rows, folder))))
+
+
+def _with(seeds: Sequence[int]) -> str:
+    """Returns the seeds with which a condition does not hold: `, seeds 1, 2`; empty if they are unknown."""
+    return f", seed{'s' * (len(seeds) > 1)} {listed(seeds)}" if seeds else ""
 
 
 def rows_of(outcomes: Mapping[str, Sequence[bool]]) -> list[Row]:

@@ -108,8 +108,9 @@ def eval(  # noqa: A001 - the name of the command
         results, text = campaign.results(numbers), ""
         if results:
             report = _own(plan, "report", f"; the results of the runs stay in {folder}")
+            named = {"seeds": results.seeds} if _takes(plan, "report", "seeds") else {}
             with _refused_by(folder):
-                text = report(results, folder)
+                text = report(results, folder, **named)
     except CampaignError as error:
         typer.echo(f"error: {error}", err=True)
         raise typer.Exit(BAD_INPUT if isinstance(error, FolderError) else FAILED) from error
@@ -235,13 +236,19 @@ def _flaw_in(plan: Plan) -> Callable[[Any], str]:
     return _own(plan, "flaw_in") if hasattr(module, "flaw_in") else lambda _: ""
 
 
+def _takes(plan: Plan, name: str, parameter: str) -> bool:
+    """Returns whether a function of the evaluation's module has a parameter of that name."""
+    function = getattr(import_module(plan.evaluation.partition(":")[0]), name)
+    return parameter in signature(function).parameters
+
+
 def _own(plan: Plan, name: str, cure: str = "") -> Callable[..., str]:
     """Returns a function of the evaluation's module; its errors, except `OSError`, become a `CampaignError`."""
     module = plan.evaluation.partition(":")[0]
 
-    def called(*words: Any) -> str:
+    def called(*words: Any, **named: Any) -> str:
         try:
-            answer: str = getattr(import_module(module), name)(*words)
+            answer: str = getattr(import_module(module), name)(*words, **named)
         except OSError:  # of the folder
             raise
         except Exception as error:

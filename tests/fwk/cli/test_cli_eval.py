@@ -26,6 +26,11 @@ def test_each_seed_is_measured_and_reported(launch: Path) -> None:
     assert (launch.parent / "eval-it" / "seeds.txt").read_text() == "1 2 3"
 
 
+def test_report_gets_the_seed_of_each_result(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cli_eval_parts, "report", lambda results, folder, seeds: f"{len(results)} of {seeds}")
+    assert evaluated(str(launch), "--seeds", "12..14", "--jobs", "1")[:2] == (1, "2 of [12, 14]\n")
+
+
 def test_interrupted_evaluation_resumes(launch: Path) -> None:
     code, table, said = evaluated(str(launch), "--seeds", "12..14", "--jobs", "1")
     assert (code, table) == (1, "12 14\n")

@@ -170,7 +170,7 @@ def test_command_prints_a_line_for_each_scenario(
     assert command.main() == 1
     printed = capsys.readouterr().out.splitlines()
     assert printed[0].startswith("ok     match-ends (")
-    assert printed[1:] == ["failed mine (0.1 s)", "       0.05 s: not world.game_state.score_cyan > 0"]
+    assert printed[1:] == ["failed mine, seed 1 (0.1 s)", "       0.05 s: not world.game_state.score_cyan > 0"]
 
 
 def test_scenario_is_played_with_the_seed_of_the_command(
@@ -212,5 +212,5 @@ def test_component_that_fails_breaks_its_scenario_alone(
     assert evaluation.played("scenarios.yaml", 1.0, 1) == {"bad": ["ValueError: no wheels"], "mine": []}
     assert command.main() == 1
     shown = capsys.readouterr()
-    assert shown.out == "failed bad (0.0 s)\n       ValueError: no wheels\nok     mine (0.1 s)\n"
+    assert shown.out == "failed bad, seed 1 (0.0 s)\n       ValueError: no wheels\nok     mine (0.1 s)\n"
     assert "Traceback" in shown.err

@@ -23,7 +23,9 @@ def test_evaluation_of_the_book_counts_seeds(tmp_path: Path, monkeypatch: pytest
     text = evaluation.report(results, out)
     rows = {row["name"]: row for row in json.loads((out / "table.json").read_text())}
     assert {name: row["value"] for name, row in rows.items()} == {evaluation.ALL: 0.5, "bad": 0.0, "mine": 1.0}
-    assert text.endswith("bad: 0.05 s: not x(cyan2) > 0")
+    assert text.endswith("\nbad: 0.05 s: not x(cyan2) > 0")
+    assert evaluation.report(results, out, [3, 7]).endswith("\nbad, seeds 3, 7: 0.05 s: not x(cyan2) > 0")
+    assert evaluation.report(results[:1], out, [3]).endswith("\nbad, seed 3: 0.05 s: not x(cyan2) > 0")
     assert sorted(file.name for file in out.iterdir()) == ["measures.png", "table.csv", "table.json"]
 
 
