@@ -28,6 +28,8 @@ BOOK = Path(__file__).parent / "book"
 """Folder of the scenarios that come with the robots."""
 _BALL_S, _LAID_S = 0.1, 0.15
 """Time at which the ball is put to its place, and that of the next tick, which shows it there."""
+SHARED = ("field", "robot", "ball", "players")
+"""Rules that every component with a setting of the name gets, as from the section `shared` of a launch file."""
 LONGEST = 100_000
 """Letters of a file at most: a match waits while its crew reads one."""
 _Number = Annotated[FiniteFloat, Strict()]
@@ -53,7 +55,7 @@ class Scenario(Expectations):
     ball: dict[str, _Number] = {}
     """Place and velocity of the ball once play has begun, as in `place_ball_t`; empty: the kick-off."""
     rules: dict[str, Any] = {}
-    """Settings of the referee."""
+    """Settings of the referee; those in `SHARED` reach all components that have them."""
     realism: Realism = "realistic"
     """Preset of bodies, ball, percepts and radio, and of the errors that the robots state."""
     settings: dict[str, dict[str, Any]] = {}
@@ -67,6 +69,11 @@ class Scenario(Expectations):
     def everyone(self) -> list[str]:
         """Names of all robots."""
         return [*self.robots, *self.seeing, *self.dummies, *self.scripted]
+
+    @property
+    def shared(self) -> dict[str, Any]:
+        """Settings that all components share."""
+        return {name: self.rules[name] for name in SHARED if name in self.rules}
 
     @property
     def begins_s(self) -> float:
@@ -112,7 +119,7 @@ def parsed(text: str, where: str, further: Check = _nothing, last: Check = _noth
         scenario = document.values(Scenario)
         document.raise_mistakes()
         assert scenario
-        config = simulator_settings(scenario.settings)
+        config = simulator_settings(scenario.shared | scenario.settings.get("world/simulator", {}))
         _add(document, _mistakes(scenario, config))
         document.values(RefereeConfig, "rules", who="rules", what="setting")
         _add_conditions(document, scenario)
@@ -130,7 +137,7 @@ def parsed(text: str, where: str, further: Check = _nothing, last: Check = _noth
 def _mistakes(scenario: Scenario, config: SimulatorConfig) -> Iterator[str]:
     thinking = {"robots": scenario.robots, "seeing": scenario.seeing}
     yield from robot_mistakes({**thinking, "dummies": scenario.dummies, "scripted": scenario.scripted}, scenario.places)
-    yield from team_mistakes(thinking, scenario.settings)
+    yield from team_mistakes(thinking, [scenario.rules, *scenario.settings.values()])
     yield from script_mistakes(scenario.scripted, scenario.time_s)
     yield from ball_mistakes(scenario.ball, config.field)
     yield from command_mistakes(scenario.commands, scenario.everyone, scenario.time_s, config)

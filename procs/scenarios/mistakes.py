@@ -6,7 +6,7 @@ A mistake begins with the path of its value: `commands.0: place_ball: ...`.
 import math
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError
@@ -48,15 +48,16 @@ def robot_mistakes(named: Mapping[str, Collection[str]], places: Mapping[str, An
             yield f"places: no robot '{name}'; there are {', '.join(sorted(everyone)) or 'none'}"
 
 
-def team_mistakes(named: Mapping[str, Sequence[str]], settings: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
-    """Yields the robots that play for no team: neither their names nor the settings `players` say for which.
+def team_mistakes(named: Mapping[str, Sequence[str]], settings: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+    """Yields the robots that play for no team: neither their names nor `players` in any of the settings say for which.
 
     `named` holds the names under each key of the file.
     """
-    stated = [players for values in settings.values() if isinstance(players := values.get("players"), Mapping)]
+    stated = [players for values in settings if isinstance(players := values.get("players"), Mapping)]
     for path, name in _paths(named):
         if not (_has_large_number(name) or player_of(name, PLAYERS) or any(name in each for each in stated)):
-            yield f"{path}: '{name}' plays for no team; names such as cyan1 and magenta2 tell it, or settings 'players'"
+            right = f"names such as cyan1 tell it, or rules: {{players: {{{name}: {{team: cyan, number: 1}}}}}}"
+            yield f"{path}: '{name}' plays for no team; {right}"
 
 
 def _has_large_number(name: str) -> bool:
@@ -110,10 +111,10 @@ def _refusals(action: Action, everyone: Sequence[str], config: SimulatorConfig) 
         yield ball_mistake(command, config.field)
 
 
-def simulator_settings(settings: Mapping[str, Mapping[str, Any]]) -> SimulatorConfig:
+def simulator_settings(stated: Mapping[str, Any]) -> SimulatorConfig:
     """Returns the settings of the simulator that a scenario states; the usual ones if they have mistakes."""
     try:
-        return SimulatorConfig.model_validate(settings.get("world/simulator", {}))
+        return SimulatorConfig.model_validate(stated)
     except ValidationError:
         return SimulatorConfig()
 

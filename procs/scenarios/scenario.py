@@ -1,6 +1,7 @@
 """Run of a scenario in memory: its components, its mistakes and its verdict."""
 
 from collections.abc import Iterator
+from copy import deepcopy
 from pathlib import Path
 from typing import Any, get_type_hints
 
@@ -73,7 +74,9 @@ def _check(scenario: Scenario, document: Document) -> None:
     for name, values in scenario.settings.items():
         config = _config(kinds[name]) if name in kinds else None
         if name not in kinds:
-            document.add(f"settings: no component '{name}'; {right_name(name, kinds)}", "settings", name)
+            shared = "write realism: beside settings:, and field, robot, ball and players under rules:"
+            right = shared if name == "shared" else right_name(name, kinds)
+            document.add(f"settings: no component '{name}'; {right}", "settings", name)
         elif name == CREW:
             document.add(f"settings: {CREW} has its actions under commands", "settings", name)
         elif config:
@@ -89,6 +92,7 @@ def _check(scenario: Scenario, document: Document) -> None:
 def _stated(scenario: Scenario) -> Iterator[tuple[str, str, str]]:
     """Yields the settings that other keys of the file state: component, setting, and the key."""
     yield from (("world/referee", rule, "rules") for rule in scenario.rules)
+    yield from (("world/simulator", rule, "rules") for rule in scenario.shared)
     yield from ((f"{robot}/script", "steps", "scripted") for robot in scenario.scripted)
     for setting, key in (("starts", "places"), ("realism", "realism")):
         if key in scenario.model_fields_set:
@@ -169,8 +173,10 @@ def _settings(scenario: Scenario) -> tuple[Settings, dict[str, dict[str, str]], 
     channels, turns = {}, {}
     for name, part in _components(scenario).items():
         config = _config(part)
-        if config and "realism" in config.model_fields:
-            settings[name] = settings.get(name, {}) | {"realism": scenario.realism}
+        shared = deepcopy(scenario.shared)  # each its own, so that a launch file writes them out
+        for setting, value in {"realism": scenario.realism, **shared}.items():
+            if config and setting in config.model_fields:
+                settings[name] = settings.get(name, {}) | {setting: value}
         if part is Percepts:
             turns[name] = (2, number_of(name.partition("/")[0]))  # robots take turns, as in the launch files
         if part is Radio:
