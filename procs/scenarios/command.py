@@ -128,7 +128,8 @@ def _seeds(text: str) -> range:
 def _said(error: ScenarioError | OSError, file: Path) -> str:
     if isinstance(error, FileNotFoundError):
         near = get_close_matches(file.name.removesuffix(".yaml"), [each.stem for each in BOOK.glob("*.yaml")], 1)
-        return f"{file}: there is no such scenario" + (f"; did you mean '{near[0]}'?" if near else "")
+        right = f"did you mean '{near[0]}'?" if near else f"name a file, or one of those in {BOOK} without its ending"
+        return f"{file}: there is no such scenario; {right}"
     if isinstance(error, IsADirectoryError):
         return f"{file}: it is a folder; name files in it, or none to play the book"
     return f"{file}: {error.strerror}" if isinstance(error, OSError) else str(error)

@@ -1,5 +1,7 @@
 """Run of a scenario in memory: its components, its mistakes and its verdict."""
 
+import os
+import stat
 from collections.abc import Iterator
 from copy import deepcopy
 from pathlib import Path
@@ -59,13 +61,22 @@ def read(path: Path) -> Scenario:
         OSError: the file cannot be read.
     """
     try:
-        with open(path, encoding="utf-8") as file:
+        with open(path, encoding="utf-8", opener=_at_once) as file:
+            os.set_blocking(file.fileno(), True)
             text = file.read(_LETTERS + 1)  # a device such as /dev/zero has no end
+            unwritten = not text and stat.S_ISFIFO(os.fstat(file.fileno()).st_mode)
     except UnicodeDecodeError as error:
         raise ScenarioError(f"{path}: it is not UTF-8 text") from error
     if len(text) > _LETTERS:
         raise ScenarioError(f"{path}: it has more than {_LETTERS:,} letters; a scenario has {LONGEST:,} at most")
+    if unwritten:
+        raise ScenarioError(f"{path}: it is a pipe into which no program writes; name a file")
     return parsed(text, str(path), _check, _check_run)
+
+
+def _at_once(path: str, flags: int) -> int:
+    """Opens a file without waiting for the writer of a pipe."""
+    return os.open(path, flags | os.O_NONBLOCK)
 
 
 def _check(scenario: Scenario, document: Document) -> None:

@@ -99,7 +99,7 @@ def test_settings_are_added_to_places_and_rules(tmp_path: Path) -> None:
     ("name", "message"),
     [
         ("pass-is-recieved", "pass-is-recieved: there is no such scenario; did you mean 'pass-is-received'?\n"),
-        ("qq", "qq: there is no such scenario\n"),
+        ("qq", f"qq: there is no such scenario; name a file, or one of those in {BOOK} without its ending\n"),
         (".", ".: it is a folder; name files in it, or none to play the book\n"),
     ],
 )

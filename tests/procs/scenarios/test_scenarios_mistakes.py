@@ -1,5 +1,6 @@
 """Mistakes of scenario files, each named with its line and with what would be right."""
 
+import os
 import re
 from pathlib import Path
 
@@ -313,6 +314,24 @@ def test_file_of_bytes_is_not_a_scenario(tmp_path: Path) -> None:
 def test_device_without_an_end_is_not_a_scenario() -> None:
     with pytest.raises(ScenarioError, match=r"/dev/zero: it has more than 1,000,000 letters; a scenario has 100,000"):
         run(Path("/dev/zero"))
+
+
+@pytest.mark.timeout(60)
+def test_pipe_without_a_writer_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "mine.yaml")
+    with pytest.raises(ScenarioError, match=r"mine.yaml: it is a pipe into which no program writes; name a file"):
+        run(tmp_path / "mine.yaml")
+
+
+def test_pipe_is_read_to_its_end(tmp_path: Path) -> None:
+    """Shells make one of `<(...)`."""
+    ours, theirs = os.pipe()
+    os.write(theirs, b"dummies: [cyan2]\nalways: [x(cyan2) < 0]\ntime_s: 0.1\n")
+    os.close(theirs)
+    try:
+        assert run(Path(f"/dev/fd/{ours}")).ok
+    finally:
+        os.close(ours)
 
 
 def test_all_mistakes_of_all_files_come_at_once(
