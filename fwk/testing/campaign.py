@@ -22,7 +22,7 @@ from fwk.lcm.type_registry import put_first, use_types_of
 from fwk.model.errors import some
 from fwk.plan.classes import find_object
 from fwk.plan.what_ran import hash_of_module
-from fwk.testing.differing import differing
+from fwk.testing.differing import check_plan, differing
 from fwk.testing.executors import CampaignError
 
 Work = Callable[..., Any]
@@ -61,12 +61,15 @@ class Evaluation:
     """Settings to override: `PATH=VALUE`."""
     modules: Mapping[str, str] = field(default_factory=dict)
     """Modules that the process must have, with the hashes of their files; a worker of a cluster may have others."""
+    plan: str = ""
+    """Digest of the plan that the process must play; empty for any."""
 
     def __call__(self, file: str, time_s: float, seed: int) -> Any:
         """Plays a run and returns its measurements.
 
         Raises:
-            CampaignError: this process has other modules, or the run failed; the text names a component that did.
+            CampaignError: this process has other modules or another launch file, or the run failed; the text names a
+                component that did.
         """
         for folder in self.folders:
             use_types_of(Path(folder))
@@ -78,6 +81,8 @@ class Evaluation:
             cure = "copy the code to its machine if it has a copy of its own, and restart the worker"
             raise CampaignError(f"a worker has other code of {other[0]}{more}; {cure}")
         try:
+            if self.plan:
+                check_plan(file, self.sets, self.plan)
             return work(file, time_s, seed, self.sets) if self.sets else work(file, time_s, seed)
         except CampaignError:
             raise

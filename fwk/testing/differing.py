@@ -1,13 +1,56 @@
-"""Difference of two campaigns, in the words of the command line."""
+"""What tells campaigns apart: digests of their plans, and their difference in the words of the command line."""
 
+import hashlib
 import json
 from collections.abc import Mapping
 from typing import Any
+
+from fwk.model.plan import Plan
+from fwk.testing.executors import CampaignError
+from fwk.testing.launched import launch_plan
 
 _TYPED = {"time_s": "--time", "sets": "--set", "file": "the launch file", "by": "the evaluation"}
 """What a user typed, or finds in the launch file, by the keys of a campaign's note."""
 _DIGESTS = ("plan", "run")
 """Keys of digests, which say nothing: of components and their settings, and of the run's own settings."""
+_checked: dict[tuple[str, tuple[str, ...]], str] = {}
+"""Digest of the plan that this process plays of a launch file with settings that are overridden."""
+
+
+def digests_of(plan: Plan) -> dict[str, str]:
+    """Returns a digest of stages and components with all of their settings, and one of the run's own settings.
+
+    Runs of other components are not mixed in. The settings of the run tell whether those typed with --set do the same.
+    """
+    played = [
+        (each.name, each.module, each.class_name, each.config, each.channels, each.every, each.offset)
+        for each in plan.components
+    ]
+    paced = (plan.clock, plan.speed, plan.stage_time_us, plan.loop_time_us, plan.loop_time_warnings, plan.public_url)
+    return {"plan": digest_of((plan.period_us, plan.stages, played)), "run": digest_of(paced)}
+
+
+def digest_of(value: Any) -> str:
+    """Returns the beginning of a hash of the value as Python writes it."""
+    return hashlib.sha256(repr(value).encode()).hexdigest()[:16]
+
+
+def check_plan(file: str, sets: tuple[str, ...], digest: str) -> None:
+    """Has this process play a launch file as it is now, and checks that this is the plan of the campaign.
+
+    A worker of a cluster outlives campaigns, and may have played the file before it was changed.
+
+    Raises:
+        CampaignError: the plan has another digest.
+        PlanError: the file has mistakes.
+    """
+    if _checked.get((file, sets)) == digest:
+        return
+    launch_plan.cache_clear()
+    found = _checked[file, sets] = digests_of(launch_plan(file, sets))["plan"]
+    if found != digest:
+        cure = "type the command again, after copying the file to the machines of the workers if they have their own"
+        raise CampaignError(f"{file} has other components or settings than at the start of the evaluation; {cure}")
 
 
 def differing(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:

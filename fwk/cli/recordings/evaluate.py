@@ -25,6 +25,7 @@ from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.what_ran import imported_modules
 from fwk.program import BAD_INPUT, FAILED
 from fwk.testing.campaign import Campaign, Evaluation, FolderError, failure_of, listed
+from fwk.testing.differing import digest_of, digests_of
 from fwk.testing.executors import CampaignError, executor_of
 from fwk.testing.seeds import seeds_of
 
@@ -91,10 +92,11 @@ def eval(  # noqa: A001 - the name of the command
     if cause := _refusal(plan, sets or (), time_s):
         raise _bad_input(cause)
     time_s = _RUN_S if time_s is None else time_s
-    about = {"file": os.path.normpath(plan.file), "time_s": time_s, "by": plan.evaluation, **_digests(plan)}
-    work = Evaluation(plan.evaluation, plan.folders, tuple(sets or ()), modules if cluster else {})
+    digests = digests_of(plan)
+    about = {"file": os.path.normpath(plan.file), "time_s": time_s, "by": plan.evaluation, **digests}
+    work = Evaluation(plan.evaluation, plan.folders, tuple(sets or ()), modules if cluster else {}, digests["plan"])
     try:
-        code = _short(sorted((modules | _inputs(plan)).items()))
+        code = digest_of(sorted((modules | _inputs(plan)).items()))
         with _refused_by(folder):
             campaign = Campaign(folder, about | ({"sets": sets} if sets else {}), code, _flaw_in(plan))
             former = campaign.of_other_code(numbers)
@@ -278,23 +280,6 @@ def _refused_by(folder: Path) -> Iterator[None]:
         is_file = isinstance(error, (FileExistsError, NotADirectoryError))
         reason = "it is not a folder; name one for the results" if is_file else error.strerror or error
         raise FolderError(f"--out {error.filename or folder}: {reason}") from error
-
-
-def _digests(plan: Plan) -> dict[str, str]:
-    """Returns a digest of stages and components with all of their settings, and one of the run's own settings.
-
-    Runs of other components are not mixed in. The settings of the run tell whether those typed with --set do the same.
-    """
-    played = [
-        (each.name, each.module, each.class_name, each.config, each.channels, each.every, each.offset)
-        for each in plan.components
-    ]
-    paced = (plan.clock, plan.speed, plan.stage_time_us, plan.loop_time_us, plan.loop_time_warnings, plan.public_url)
-    return {"plan": _short((plan.period_us, plan.stages, played)), "run": _short(paced)}
-
-
-def _short(value: Any) -> str:
-    return hashlib.sha256(repr(value).encode()).hexdigest()[:16]
 
 
 def _seeds(text: str) -> range:

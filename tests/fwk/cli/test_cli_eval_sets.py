@@ -1,11 +1,18 @@
-"""`fwk eval --set`: settings that mean the same are one campaign, in whatever way they are typed."""
+"""Settings of `fwk eval`: those that mean the same are one campaign, and each run has those of its campaign."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from fwk import Component, Config
+from fwk.plan.load import load_plan
+from fwk.testing.campaign import Evaluation
+from fwk.testing.differing import digests_of
+from fwk.testing.executors import CampaignError
+from fwk.testing.launched import system_of
 from tests.fwk.cli.cli_eval_tools import LAUNCH, evaluated
 
 
@@ -24,6 +31,12 @@ class Tuned(Component):
 
     def loop(self) -> None:
         """Ends at once."""
+
+
+def gain(file: str, time_s: float, seed: int, sets: Sequence[str] = ()) -> float:
+    """Returns the gain of the component that plays."""
+    component: Any = system_of(file, seed=seed, sets=sets).runners["it/idle"].component
+    return float(component.config.gain)
 
 
 TUNED = LAUNCH.replace("cli_eval_parts:Idle", "test_cli_eval_sets:Tuned")
@@ -69,3 +82,16 @@ def test_note_of_former_code_compares_settings_as_typed(launch: Path) -> None:
     note.write_text(json.dumps({key: value for key, value in json.loads(note.read_text()).items() if key != "run"}))
     assert evaluated(*words, "it/idle.gain=2")[0] == 0
     assert "--set is it/idle.gain=2 there, it/idle.gain=2.0 here" in evaluated(*words, "it/idle.gain=2.0")[2]
+
+
+def test_worker_plays_a_launch_file_as_it_is_now(launch: Path) -> None:
+    """A worker of a cluster lives longer than a campaign; the file may be changed between two, or during one."""
+    evaluations = []
+    for settings in ("{}", "{gain: 2.0}"):
+        launch.write_text(f"{TUNED}\nconfig: {{it/idle: {settings}}}\n")
+        use = f"{__name__}:gain"
+        evaluations.append(Evaluation(use, plan=digests_of(load_plan(str(launch)))["plan"]))
+        assert evaluations[-1](str(launch), 1.0, 1) == (2.0 if "gain" in settings else 0.5)
+    with pytest.raises(CampaignError, match=r"it.yaml has other components or settings than at the start of the eval"):
+        evaluations[0](str(launch), 1.0, 1)
+    assert evaluations[1](str(launch), 1.0, 1) == 2.0
