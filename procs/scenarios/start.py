@@ -20,6 +20,8 @@ def found(name: str, text: str) -> Scenario:
     if text:
         return parsed(text, name or "text")
     names = [path.stem for path in BOOK.glob("*.yaml")]
+    if not name:
+        raise ScenarioError("neither a name nor a text; give name=pass-reaches-the-mate, or a file as text=@FILE")
     if name not in names:
         near = get_close_matches(name, names, 1)
         raise ScenarioError(

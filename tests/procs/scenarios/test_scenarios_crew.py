@@ -131,7 +131,8 @@ def test_robots_change_places() -> None:
     ("name", "text", "reason"),
     [
         ("match-end", "", "no scenario 'match-end' in the book; did you mean 'match-ends'?"),
-        ("", "", "no scenario '' in the book; a file of your own is given as text=@FILE"),
+        ("", "", "neither a name nor a text; give name=pass-reaches-the-mate, or a file as text=@FILE"),
+        ("qq", "", "no scenario 'qq' in the book; a file of your own is given as text=@FILE"),
         ("../book/match-ends", "", "no scenario '../book/match-ends' in the book; did you mean 'match-ends'?"),
         ("mine", "robot: [cyan2]", "mine:1: no key 'robot'; did you mean 'robots'?"),
         (
