@@ -367,6 +367,11 @@ def _read(file: Path) -> bytes | None:
     raise FolderError(f"{file} cannot be read: {reason}; move it away, or choose another folder")
 
 
+def cure_of(error: OSError) -> str:
+    """Returns what helps where a file cannot be written."""
+    return f"{_CURES.get(error.errno or 0, '')}choose another folder"
+
+
 def _write(file: Path, text: str) -> None:
     """Writes a file in one step: it is whole or not there.
 
@@ -381,8 +386,7 @@ def _write(file: Path, text: str) -> None:
             os.fsync(opened.fileno())
         partial.replace(file)
     except OSError as error:
-        cure = _CURES.get(error.errno or 0, "")
-        raise FolderError(f"{file} cannot be written: {error.strerror}; {cure}choose another folder") from error
+        raise FolderError(f"{file} cannot be written: {error.strerror}; {cure_of(error)}") from error
     finally:  # also after Ctrl-C in the middle
         with suppress(OSError):
             partial.unlink()

@@ -24,7 +24,7 @@ from fwk.plan.files.launch_file import FOLDER, INSTALLED
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.what_ran import imported_modules
 from fwk.program import BAD_INPUT, FAILED
-from fwk.testing.campaign import Campaign, Evaluation, FolderError, failure_of, listed
+from fwk.testing.campaign import Campaign, Evaluation, FolderError, cure_of, failure_of, listed
 from fwk.testing.differing import digest_of, digests_of
 from fwk.testing.executors import CampaignError, executor_of
 from fwk.testing.seeds import seeds_of
@@ -278,8 +278,9 @@ def _refused_by(folder: Path) -> Iterator[None]:
         yield
     except OSError as error:
         is_file = isinstance(error, (FileExistsError, NotADirectoryError))
-        reason = "it is not a folder; name one for the results" if is_file else error.strerror or error
-        raise FolderError(f"--out {error.filename or folder}: {reason}") from error
+        reason = "it is not a folder; name one for the results" if is_file else f"{error.strerror or error}"
+        cure = "" if ";" in reason else f"; {cure_of(error)}"
+        raise FolderError(f"--out {error.filename or folder}: {reason}{cure}") from error
 
 
 def _seeds(text: str) -> range:

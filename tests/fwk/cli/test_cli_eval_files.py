@@ -53,6 +53,15 @@ def test_cure_fits_what_keeps_a_file_from_being_written(
     assert str(raised.value) == f"{tmp_path}/campaign.json cannot be written: {os.strerror(number)}; {cure}"
 
 
+def test_folder_that_cannot_be_made_is_told_with_a_cure(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(folder: Path, **_: object) -> None:
+        raise OSError(errno.EACCES, os.strerror(errno.EACCES), str(folder))
+
+    monkeypatch.setattr(Path, "mkdir", fail)
+    cure = "allow yourself to write there, or choose another folder"
+    assert evaluated("it.yaml", "--out", "x/y")[::2] == (2, f"error: --out x/y: Permission denied; {cure}\n")
+
+
 def test_folder_that_another_campaign_took_meanwhile_is_named(tmp_path: Path) -> None:
     """Of two evaluations that begin in the same moment one keeps the folder; no result lies under another's note."""
     first = Campaign(tmp_path, {"file": "it", "time_s": 4.0})
