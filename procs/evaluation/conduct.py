@@ -63,11 +63,16 @@ def _released(piece: Piece) -> Iterator[int]:
 
 
 def _taken(piece: Piece) -> list[bool]:
-    """Returns whether its team kicked the ball in time, for each set piece that the referee does not stop before."""
+    """Returns whether its team kicked the ball in time, for each set piece that the referee does not stop before.
+
+    One that the piece ends too soon for is left out, taken or not: otherwise only those that were taken would count.
+    """
     taken = []
     for tick in _released(piece):
         team = Team(piece.game[tick].state_team)
         in_time = range(tick, tick + round(_TAKEN_S / piece.period_s) + 1)
+        if in_time[-1] > max(piece.game):
+            continue
         running = list(itertools.takewhile(lambda each: each in piece.game and not piece.game[each].stopped, in_time))
         events = [event for each in running for event in piece.events.get(each, ())]
         kicked = any(each.kind == match_event_t.KICK and piece.team(each.robot) == team.name.lower() for each in events)

@@ -57,6 +57,16 @@ def test_restart_that_is_cut_short_does_not_count(until: int) -> None:
     assert conducted(made)["restarts taken within 7 s"].tolist() == []
 
 
+def test_restart_near_the_end_does_not_count_though_taken() -> None:
+    """Without this the rate of pieces would rise with the number of restarts at their ends."""
+    made = piece([robot("cyan1", 0.0, 0.0)], ticks=100, vx_m_s=0.0)
+    for tick in made.truth:
+        game = made.game[tick] = game_state_t()
+        game.state_team, game.stopped = game_state_t.TEAM_CYAN, tick < FIRST + 10
+    made.events = {FIRST + 20: [event(match_event_t.KICK, "cyan1", 3.0)]}
+    assert conducted(made)["restarts taken within 7 s"].tolist() == []
+
+
 def passed(toucher: str, ticks: int = 200, ball_m_s: float = 0.0) -> Piece:
     """Returns a piece with a pass from cyan1, which another robot then touches and keeps if it is cyan2."""
     made = piece([robot("cyan1", 0.0, 0.0), robot("cyan2", 3.0, 0.0), robot("magenta1", 3.0, 1.0)], ticks, ball_m_s)
