@@ -1,5 +1,6 @@
 """Seeds that a command line names."""
 
+import argparse
 import re
 
 MOST = 100_000
@@ -19,3 +20,14 @@ def seeds_of(text: str) -> range:
     if last - first >= MOST:
         raise ValueError(f"'{text}' is too many; use {MOST:,} seeds at most")
     return range(first, last + 1)
+
+
+def seed_argument(text: str) -> int:
+    """Returns the seed of a command line that `argparse` reads.
+
+    Raises:
+        ArgumentTypeError: the text is no whole number from 0.
+    """
+    if not (text.isascii() and text.isdecimal()):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a seed; use a whole number from 0")
+    return int(text)

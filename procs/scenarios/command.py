@@ -11,7 +11,7 @@ from pathlib import Path
 
 from fwk.testing import ExpressionError, Verdict
 from fwk.testing.executors import executor_of
-from fwk.testing.seeds import seeds_of
+from fwk.testing.seeds import seed_argument, seeds_of
 from procs.evaluation.table import as_text
 from procs.scenarios.evaluation import broken_in, rows_of
 from procs.scenarios.file import BOOK, Scenario, ScenarioError
@@ -25,7 +25,7 @@ def main() -> int:
         "files", nargs="*", type=Path, help="scenario files; names in the book need no folder or ending"
     )
     choice = parser.add_mutually_exclusive_group()
-    choice.add_argument("--seed", type=_seed, metavar="N", help="plays all with this seed instead of their own")
+    choice.add_argument("--seed", type=seed_argument, metavar="N", help="plays all with this seed instead of their own")
     choice.add_argument(
         "--seeds", type=_seeds, metavar="FIRST..LAST", help="plays each with all these seeds, in parallel"
     )
@@ -110,12 +110,6 @@ def _play_often(paths: Sequence[Path], seeds: range) -> int:
         for text in texts:
             print(f"{names[path]}, seed {seed}: {text}")
     return 2 if mistakes else int(any(broken.values()))
-
-
-def _seed(text: str) -> int:
-    if not (text.isascii() and text.isdecimal()):
-        raise argparse.ArgumentTypeError(f"'{text}' is not a seed; use a whole number from 0")
-    return int(text)
 
 
 def _seeds(text: str) -> range:

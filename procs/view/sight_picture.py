@@ -17,6 +17,7 @@ import numpy as np
 from fwk.program import BAD_INPUT, FAILED, complain
 from fwk.testing import MemorySystem, PlanError, launch_plan, settings_in, system_of
 from fwk.testing.campaign import failure_of
+from fwk.testing.seeds import seed_argument
 from lcmtypes.core import picture_t
 from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t
 from procs.model.algebra import Floats
@@ -126,12 +127,6 @@ def _time_s(text: str) -> float:
     raise argparse.ArgumentTypeError(f"'{text}' is not a time; use seconds from 0 to {_LONGEST_S:g}")
 
 
-def _seed(text: str) -> int:
-    if not (text.isascii() and text.isdecimal()):
-        raise argparse.ArgumentTypeError(f"'{text}' is not a seed; use a whole number from 0")
-    return int(text)
-
-
 def main() -> None:
     """Plays the beginning of a match and writes the picture."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -139,7 +134,7 @@ def main() -> None:
     parser.add_argument("--launch", default="soccer.yaml", help="launch file; default: soccer.yaml")
     parser.add_argument("--robot", default=_ROBOT, help=f"robot whose camera is shown; default: {_ROBOT}")
     parser.add_argument("--time", type=_time_s, default=9.0, help="logical time in s; default: 9")
-    parser.add_argument("--seed", type=_seed, default=7, help="seed of the match; default: 7")
+    parser.add_argument("--seed", type=seed_argument, default=7, help="seed of the match; default: 7")
     asked = parser.parse_args()
     if asked.file.suffix not in _SUFFIXES:
         raise _refused(f"'{asked.file}' ends in '{asked.file.suffix}'; it should end in {' or '.join(_SUFFIXES)}")
