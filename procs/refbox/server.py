@@ -33,7 +33,7 @@ class ServerConfig(Config):
 
 
 class RefBoxServer(Component):
-    """Sends each base station what led to the state of the game, then every decision in the tick in which it is made.
+    """Sends each base station what led to the state of the game, then every decision in the tick after it.
 
     First come a reset, so that a base station that comes back counts no goal twice, the half, the goals, the cards, the
     robots off the field, and the break or the set piece at hand.
