@@ -70,17 +70,17 @@ class RefBoxClient(Component):
     def init(self) -> None:
         self._connection = Connection(self.clock, self.log)
         self._commands: list[Command] = []  # not handed on yet
-        self._sent: list[Sent] = []
+        self._sent: list[tuple[Command, Sent]] = []
         self._reported_us = 0  # when the newest report was due
 
     def loop(self) -> None:
-        finished = [call for call in self._sent if call.finished]
-        self._sent = [call for call in self._sent if not call.finished]
-        self._warn("the referee does not obey", [call.reason for call in finished if not call.done])
+        failed = [(command, call) for command, call in self._sent if call.finished and not call.done]
+        self._sent = [(command, call) for command, call in self._sent if not call.finished]
+        self._warn([f"the referee does not obey {command.words}: {call.reason}" for command, call in failed])
         config, connection = self.config, self._connection
         connection.attend(config.host, config.port, config.retry_s, config.connect_s)
         messages = connection.messages() if len(self._commands) < _OPEN_MAX else []
-        self._warn("RefBox", [mistake for message in messages if (mistake := self._take(message))])
+        self._warn([f"RefBox: {mistake}" for message in messages if (mistake := self._take(message))])
         self._hand_on()
         if config.report_s and connection.ready and self.clock.since_s(self._reported_us) >= config.report_s:
             self._report()
@@ -89,11 +89,11 @@ class RefBoxClient(Component):
         """Leaves the RefBox."""
         self._connection.close()
 
-    def _warn(self, what: str, reasons: list[str]) -> None:
+    def _warn(self, sentences: list[str]) -> None:
         """Logs one line, however many commands a RefBox sends in a tick."""
-        if reasons:
-            more = f" (and {len(reasons) - 1} more)" if len(reasons) > 1 else ""
-            self.log.warning(f"{what}: {reasons[0]}{more}")
+        if sentences:
+            more = f" (and {len(sentences) - 1} more)" if len(sentences) > 1 else ""
+            self.log.warning(f"{sentences[0]}{more}")
 
     def _take(self, message: bytes) -> str:
         """Takes a command; returns why the message is no command, or an empty text."""
@@ -117,7 +117,7 @@ class RefBoxClient(Component):
         asked.name = _OTHER_NAMES.get(command.name, command.name).lower()
         asked.team = command.team
         asked.robot = self._named(command) if command.robot else ""
-        self._sent.append(self.referee_command.call(timeout_s=_TIMEOUT_S))
+        self._sent.append((command, self.referee_command.call(timeout_s=_TIMEOUT_S)))
 
     def _named(self, command: Command) -> str:
         """Returns the namespace of the robot that a command names by team and number."""

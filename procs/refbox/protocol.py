@@ -63,6 +63,11 @@ class Command(NamedTuple):
     robot: int = 0
     """Number of the robot; 0 without one."""
 
+    @property
+    def words(self) -> str:
+        """Name, team and robot for people, such as `REPAIR cyan 3`."""
+        return " ".join(filter(None, (self.name, self.team, str(self.robot or ""))))
+
 
 def encode(command: Command, addresses: Mapping[str, str]) -> bytes:
     """Returns the bytes of a command; `addresses` are those of the teams by name."""

@@ -28,6 +28,24 @@ def test_client_obeys_a_command_behind_too_long_a_message() -> None:
     assert [line.text for line in bench.logged[1:]] == [f"RefBox: more than {LONGEST} bytes without a NUL; dropped"]
 
 
+def test_command_that_is_not_obeyed_is_named() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as refbox:
+        refbox.settimeout(5.0)
+        bench = Bench(RefBoxClient, "world/refbox", port=refbox.getsockname()[1])
+        bench.iterate()
+        connection, _ = refbox.accept()
+        with connection:
+            connection.sendall(say("CORNER", "224.16.32.2"))
+            for _ in range(1000):
+                bench.iterate()
+                if bench.port("referee_command").sent:
+                    break
+            bench.iterate(30)
+    bench.finalize()
+    refused = "the referee does not obey CORNER magenta: world/referee_command: was not answered in time"
+    assert bench.logged[1].text == refused
+
+
 def test_station_that_comes_back_counts_no_goal_twice() -> None:
     server = Bench(RefBoxServer, "world/refbox", port=0)
     heard: list[str] = []
