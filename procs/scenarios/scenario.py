@@ -98,6 +98,19 @@ def _check(scenario: Scenario, document: Document) -> None:
         if setting in scenario.settings.get(name, {}):
             text = f"settings: '{setting}' of {name} is stated under {where}, too; keep one"
             document.add(text, "settings", name, setting)
+    if name := _of_other_players(scenario):
+        text = f"settings: 'players' of {name} are not those of all components; state them under rules:, for all"
+        document.add(text, "settings", name, "players")
+
+
+def _of_other_players(scenario: Scenario) -> str:
+    """Returns the first component whose own setting `players` is not that of all others, or an empty text."""
+    parts = [
+        name for name, kind in _components(scenario).items() if "players" in getattr(_config(kind), "model_fields", ())
+    ]
+    stated = {name: scenario.settings.get(name, {}).get("players") for name in parts}
+    own = [name for name, players in stated.items() if players is not None]
+    return own[0] if any(players != stated[own[0]] for players in stated.values() if own) else ""
 
 
 def _stated(scenario: Scenario) -> Iterator[tuple[str, str, str]]:

@@ -49,9 +49,19 @@ def test_players_of_the_rules_play_in_all_components(tmp_path: Path) -> None:
             "robots: [alpha]",
             r"'alpha' plays for no team; names such as cyan1 tell it, or rules: {players: {alpha: {team",
         ),
+        (
+            "dummies: [a]\nsettings: {world/simulator: {players: {a: {team: cyan, number: 2}}}}",
+            "mine.yaml:2: settings: 'players' of world/simulator are not those of all components; state them under",
+        ),
         ("settings: {shared: {realism: harsh}}", "no component 'shared'; write realism: beside settings:, and field"),
     ],
 )
 def test_mistake_in_shared_rules_is_named(tmp_path: Path, text: str, message: str) -> None:
     with pytest.raises(ScenarioError, match=message):
         read(written(tmp_path, f"{text}\nat_end: [ball_speed < 9]\n"))
+
+
+def test_players_stated_for_each_component_are_right(tmp_path: Path) -> None:
+    players = "{players: {a: {team: cyan, number: 2}}}"
+    settings = f"settings: {{world/simulator: {players}, world/referee: {players}}}"
+    assert run(written(tmp_path, f"dummies: [a]\n{settings}\nat_end: [ball_speed < 9]\ntime_s: 0.1\n")).ok
