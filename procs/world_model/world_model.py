@@ -241,6 +241,7 @@ class WorldModel(Component):
         role = self.role.value if plays else role_t(role=ABSENT)
         message.role, message.intention, message.agreement = role.role, role.intention, role.agreement
         message.ball_held = self._holds
+        message.kicks = min(message.kicks, self.kicker_state.value.kicks)  # of a driver that began anew
         fill_team_message(message, view, self._ball.untold, self._untold_obstacles)
         fill_ball(message, self.world_model.value.ball, self.ball_percept.value.confidence)
         drives = self.drive_target.has_value and self.clock.since_s(self.drive_target.header.time_us) <= STALE_S

@@ -104,6 +104,18 @@ def test_restarted_driver_or_world_model_invents_no_kick() -> None:
     assert (watcher.told.kicks, watcher.told.kick_vx_m_s) == (1, 8.0)
 
 
+def test_mates_learn_the_first_kick_of_a_restarted_driver() -> None:
+    kicker, mate = Watcher("cyan1"), Watcher("cyan2")
+    heard = 0
+    for kicks, ticks in ((5, 10), (6, 10), (0, 10), (1, 3)):
+        for _ in range(ticks):
+            kicker.tick(kicks=kicks, kick_speed_m_s=8.0, visible=kicks != 1)
+            sent = kicker.bench.port("team_message").sent[heard:]
+            heard += len(sent)
+            mate.tick(told=sent[-1] if sent else None, visible=kicks != 1)
+    assert mate.ball_speed_m_s > 5.0
+
+
 ROBOTS = ("cyan1", "cyan3", "cyan4", "cyan5")
 
 
