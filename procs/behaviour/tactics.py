@@ -25,6 +25,7 @@ _MEETS_ON = 0.7  # a robot that meets a fast ball goes on while it is still so f
 _KICK_OFF_RAD = 1.2  # nearly sideways: all mates are in the own half
 _BARRED_S = 4.0  # by then another robot has touched the ball of a set piece, or the game was interrupted
 _TOUCHED_M = 0.04  # a robot with the ball so near to its body has touched it
+_OFFERS_M = (1.5, 2.5)  # before the penalty area, and aside of the ball that the goalkeeper takes, a mate awaits a pass
 _GUARD_M = 1.2  # from the ball that it may not touch, a robot stands before the own goal
 _BENCH_M = 3.0  # from the goal lines
 _PASSED_S = 1.0  # after a pass the passer leaves the ball to the receiver
@@ -255,10 +256,17 @@ class Tactics:
             runner = _free_opponent(view, self.field)
             if runner and _nearest_defender(view, runner, _MARK_M):
                 return Order("mark", runner.place, bearing_rad(runner.place, view.ball.place), "mark")
-        place = job.place
+        place = self._beside_keeper(view) if job.role == ATTACKER else job.place
         if view.is_at_ball(field_players(view), HELD_M):
             place = formation.beside_shot(view.own.place, place, view.ball.place, self.field)
         return self._stand(view, place, job.role)
+
+    def _beside_keeper(self, view: View) -> Point:
+        """Returns the place of an attacker that leaves the ball to its goalkeeper: out of the way of its kick."""
+        field, y_m = self.field, view.ball.place.y_m
+        _, across = formation.scale(field)
+        aside_m = math.copysign(_OFFERS_M[1] * across, view.own.place.y_m - y_m)
+        return Point(field.penalty_area_depth_m + _OFFERS_M[0] - field.half_length_m, y_m + aside_m)
 
     def _await_touch(self, view: View) -> Order:
         """Returns the order of the only field player after its set piece: it guards the ball until it is touched."""

@@ -299,7 +299,9 @@ def test_robot_that_meets_a_ball_goes_on_when_it_gets_slower() -> None:
 
 def test_attacker_leaves_a_ball_that_the_keeper_takes() -> None:
     keeper = robot("cyan1", -10.0, 0.0, role=GOALKEEPER)
-    assert decide(view(robot("cyan2", -6.0, 0.0), ball(-9.5, 0.0), (keeper,))).skill == "goto"
+    order = decide(view(robot("cyan2", -6.0, 0.0), ball(-9.5, 0.4), (keeper,)))
+    assert (order.skill, FIELD.in_penalty_area(*order.place, -1.0, 1.0)) == ("goto", False), "out of the keeper's way"
+    assert order.place.y_m < -1.5
 
 
 def test_defender_marks_a_free_opponent_nearby() -> None:
