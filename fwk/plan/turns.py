@@ -11,7 +11,7 @@ _FORMER = "every_ticks"
 """A setting of former cameras, which counted their ticks themselves."""
 _OFFSET_DIGITS = 6
 Turns = dict[str, Node]
-"""What the files say of `every` and `offset`, each under its name if they say it."""
+"""Nodes of `every` and `offset` under these names; a name is missing if the files do not state it."""
 
 
 def split_turns(asked: Asked, declared: Declaration, problems: Problems) -> tuple[list[Node], Turns]:
@@ -52,9 +52,7 @@ def _place(asked: Asked, turns: Turns, name: str) -> str:
 
 def _fits(asked: Asked, node: Node, problems: Problems) -> bool:
     """Notes a former setting; one in a file that contradicts `every` is a mistake, one of the command line wins."""
-    if not _is_every(node.value):
-        text = f"{_FORMER} is {node.value!r}; it should be a whole number from 1 to {EVERY_MAX}"
-        problems.add(node.place, asked.name, text)
+    if not _is_whole(_FORMER, asked, node, problems):
         return False
     if node.place != PLACE and asked.entry.every not in (None, node.value):
         text = f"{_FORMER} is {node.value}, but every is {asked.entry.every} at {asked.node.at(EVERY).place}"
@@ -66,19 +64,21 @@ def _fits(asked: Asked, node: Node, problems: Problems) -> bool:
     return True
 
 
-def _is_every(value: object) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= EVERY_MAX
+def _is_whole(name: str, asked: Asked, node: Node, problems: Problems) -> bool:
+    """Returns whether a node is a number of ticks; any other value is a mistake."""
+    value = node.value
+    if isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= EVERY_MAX:
+        return True
+    text = f"{name} is {node.plain()!r}; it should be a whole number from 1 to {EVERY_MAX}"
+    problems.add(node.place, asked.name, text)
+    return False
 
 
 def _every(asked: Asked, declared: Declaration, turns: Turns, problems: Problems) -> int:
     node = turns.get(EVERY)
     if node is None or node.value is None:
         return declared.every
-    if not _is_every(node.value):
-        text = f"every is {node.plain()!r}; it should be a whole number from 1 to {EVERY_MAX}"
-        problems.add(node.place, asked.name, text)
-        return declared.every
-    return int(node.value)
+    return int(node.value) if _is_whole(EVERY, asked, node, problems) else declared.every
 
 
 def _offset(asked: Asked, declared: Declaration, turns: Turns, every: int, problems: Problems) -> int:

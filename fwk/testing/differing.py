@@ -1,4 +1,4 @@
-"""What tells campaigns apart: digests of their plans, and their difference in the words of the command line."""
+"""Differences between campaigns: digests of their plans, and the difference in the words of the command line."""
 
 import hashlib
 import json
@@ -10,7 +10,7 @@ from fwk.testing.executors import CampaignError
 from fwk.testing.launched import launch_plan
 
 _TYPED = {"time_s": "--time", "sets": "--set", "file": "the launch file", "by": "the evaluation"}
-"""What a user typed, or finds in the launch file, by the keys of a campaign's note."""
+"""Names of options and parts of the launch file that a user knows, by the keys of a campaign's note."""
 _DIGESTS = ("plan", "run")
 """Keys of digests, which say nothing: of components and their settings, and of the run's own settings."""
 _checked: dict[tuple[str, tuple[str, ...]], str] = {}

@@ -301,11 +301,11 @@ def keeper_takes(view: View, field: Field, goes_on: bool = False) -> bool:
 
 def _would_run_into_ball(view: View, field: Field) -> bool:
     """Returns whether the goalkeeper comes home too fast to stop before a ball that lies nearer to the goal."""
-    own, ball, goal = view.own, view.ball, field.goal_centre(-1.0)
+    own, ball = view.own, view.ball
     way_rad, away_m = bearing_rad(own.place, ball.place), math.dist(own.place, ball.place)
     towards_m_s = own.velocity_m_s.x_m * math.cos(way_rad) + own.velocity_m_s.y_m * math.sin(way_rad)
     stops_m = max(0.0, towards_m_s) ** 2 / (2 * _STOPS_M_S2)
-    return math.dist(goal, ball.place) < math.dist(goal, own.place) and stops_m > away_m - view.bodies.beside_m
+    return view.ball_is_nearer_to(field.goal_centre(-1.0)) and stops_m > away_m - view.bodies.beside_m
 
 
 def leave_field(view: View, field: Field) -> Order:

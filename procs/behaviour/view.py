@@ -95,6 +95,10 @@ class View(NamedTuple):
         """All robots but the own one."""
         return (*self.mates, *self.opponents, *self.silent_mates)
 
+    def ball_is_nearer_to(self, place: Point) -> bool:
+        """Returns whether the ball is nearer to a place than the robot is."""
+        return math.dist(place, self.ball.place) < math.dist(place, self.own.place)
+
     def is_at_ball(self, robots: Iterable[Robot], within_m: float) -> bool:
         """Returns whether the ball is nearer than `within_m` to the body of one of the robots."""
         return self.ball.is_near(robots, self.bodies.beside_m + within_m)

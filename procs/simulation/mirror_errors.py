@@ -14,7 +14,7 @@ class MirrorErrors(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     latency_s: float = 0.0
-    """From the exposure until the frame or its percepts are published. ER-Force: 35 ms, MRA: 25 ms."""
+    """Time from the exposure until the frame or its percepts are published. ER-Force: 35 ms, MRA: 25 ms."""
     shake_px: float = 0.0
     """Standard deviation by which the standing robot's mirror shakes everything that a frame shows, in pixels. Pictures
     move in steps of half a pixel, so that 0.1 px become 0.06 px there, 0.2 px 0.23 px and 0.4 px 0.43 px."""

@@ -183,8 +183,9 @@ def _definitions_of(use: str, config: type[Config]) -> Schema:
     return {**below, use: own}
 
 
+@lru_cache(maxsize=1)
 def _turns() -> Schema:
-    """Returns the keys of a component that may stand among its settings, unless it has settings of these names."""
+    """Returns the schemas of `every` and `offset`, which may stand among settings, to be read only."""
     keys = ComponentEntry.model_json_schema(schema_generator=DocumentedSchema)["properties"]
     return {name: keys[name] for name in (EVERY, OFFSET)}
 

@@ -247,8 +247,8 @@ def _is_before_own_goal(scene: Scene) -> bool:
 def _would_push_it_home(scene: Scene) -> bool:
     """Returns whether the way to the other side of a ball near the own goal leads through the ball."""
     ball, goal = scene.view.ball, scene.field.goal_centre(-1.0)
-    ball_m = math.dist(goal, ball.place)
-    return ball_m < _PUSHED_HOME_M and ball.speed_m_s < _PASSED_M_S and math.dist(goal, scene.view.own.place) > ball_m
+    near = math.dist(goal, ball.place) < _PUSHED_HOME_M
+    return near and ball.speed_m_s < _PASSED_M_S and scene.view.ball_is_nearer_to(goal)
 
 
 def _waiting(scene: Scene, off_m: float) -> Drive:

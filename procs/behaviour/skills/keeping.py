@@ -220,8 +220,7 @@ def best_save(scene: Scene) -> Save | None:
 
 def _is_beyond_ball(scene: Scene) -> bool:
     """Returns whether the ball lies nearer to the own goal than the keeper, whose straight way would push it in."""
-    goal, ball = scene.field.goal_centre(-1.0), scene.view.ball
-    return ball.known and math.dist(goal, ball.place) < math.dist(goal, scene.view.own.place)
+    return scene.view.ball.known and scene.view.ball_is_nearer_to(scene.field.goal_centre(-1.0))
 
 
 def _dive_s(distance_m: float) -> float:

@@ -63,7 +63,7 @@ def test_folder_that_cannot_be_made_is_told_with_a_cure(launch: Path, monkeypatc
 
 
 def test_folder_that_another_campaign_took_meanwhile_is_named(tmp_path: Path) -> None:
-    """Of two evaluations that begin in the same moment one keeps the folder; no result lies under another's note."""
+    """Two evaluations begin in the same moment: the folder belongs to one, and the other stores no result in it."""
     first = Campaign(tmp_path, {"file": "it", "time_s": 4.0})
     Campaign(tmp_path, {"file": "it", "time_s": 3.0})
     with pytest.raises(FolderError, match="another campaign: --time is 3 there, 4 here; choose"), first.alone():
