@@ -7,9 +7,18 @@ import numpy as np
 
 from lcmtypes.soccer import ball_candidate_t, ball_percept_t
 from procs.model.algebra import Floats
+from procs.model.rays import left_of, rays
 from procs.simulation.percept_errors import PerceptErrors
-from procs.simulation.sight import blurred, claimed
-from procs.vision.ball_finder import IN_THE_AIR, area_share, most_fit, seems_whole
+from procs.simulation.sight import Glimpse, blurred, claimed
+from procs.vision.ball_finder import (
+    IN_THE_AIR,
+    LEAST_TOLD_PX,
+    area_share,
+    hidden_shift_px,
+    most_fit,
+    seems_whole,
+    unsure_px,
+)
 from procs.vision.mirror import Mirror
 from procs.vision.uncertainty import sphere_covariance
 
@@ -32,14 +41,9 @@ class BallSight:
     """Least visible part of a ball that is found."""
     stated_px: float
     """Standard deviation of a ball's place that the finder states, with the shaking of the mirror."""
-    whole: float
-    """Visible part from which a ball counts as whole."""
-    hidden_share: float
-    """Growth of that deviation for a ball on the ground of which less is visible, as a share of its radius in the
-    picture times the part that is missing."""
 
     def found(
-        self, at_m: Floats, height_m: float, visible: float, moved_px: tuple[float, float], noise: list[float]
+        self, at_m: Floats, height_m: float, glimpse: Glimpse, moved_px: tuple[float, float], noise: list[float]
     ) -> ball_percept_t:
         """Returns the percept of a ball.
 
@@ -49,49 +53,55 @@ class BallSight:
         Args:
             at_m: (1, 2), x and y in the robot frame.
             height_m: of its lowest point.
-            visible: part of its area that nothing hides.
+            glimpse: part of its disc that nothing hides.
             moved_px: shift of the ball in the picture, along and across the ray.
             noise: standard normal errors of its place along and across the ray, and of its area.
         """
-        if height_m <= 0.0:
-            return self._blurred(at_m, visible, moved_px, noise)
+        visible, seen_m = glimpse.visible, at_m + glimpse.aside_m * left_of(rays(at_m)[1])
         column, row, radius_px = self.mirror.sphere((*at_m[0].tolist(), height_m + self.radius_m), self.radius_m)
+        restored = glimpse.one_edge and radius_px >= LEAST_TOLD_PX
+        middle_m, doubt = (at_m, 0.0) if restored else (seen_m, 1.0)
+        if height_m <= 0.0:
+            return self._blurred(middle_m, visible, doubt, moved_px, noise)
         area = max(_LEAST_AREA, visible * (1.0 + self.errors.ball_area_px / radius_px * noise[2]))
         viewpoint_m = self.mirror.height_m - self.radius_m
         if height_m < viewpoint_m:
-            appears_m = at_m * viewpoint_m / (viewpoint_m - height_m)
+            appears_m = middle_m * viewpoint_m / (viewpoint_m - height_m)
             *_, expected_px = self.mirror.sphere((*appears_m[0].tolist(), self.radius_m), self.radius_m)
             fit = area * (radius_px / expected_px) ** 2
             if fit <= most_fit(expected_px):
-                return self._blurred(appears_m, min(fit, 1.0 / fit), moved_px, noise)
+                return self._blurred(appears_m, min(fit, 1.0 / fit), doubt, moved_px, noise)
         if not self.mirror.shows_all(column, row, radius_px):
             return ball_percept_t()
         spread = float(np.interp(visible, _VISIBLE, _SPREADS))
         if not seems_whole(spread, radius_px):
             return ball_percept_t()
         share = area_share(spread, radius_px)
-        return self._in_the_air(at_m, height_m, area, share, moved_px, noise)
+        return self._in_the_air(seen_m, height_m, area, share, moved_px, noise)
 
-    def on_ground(self, x_m: float, y_m: float, confidence: float) -> ball_percept_t:
-        """Returns the percept of a ball that is found at a place of the robot frame, or of none."""
+    def on_ground(self, x_m: float, y_m: float, confidence: float, doubt: float = 1.0) -> ball_percept_t:
+        """Returns the percept of a ball that is found at a place of the robot frame, or of none.
+
+        `confidence` is its visible part; `doubt` that about the side on which the other part is hidden, 0..1.
+        """
         percept = ball_percept_t()
         if confidence >= self.least_visible and math.hypot(x_m, y_m) <= self.reach_m:
             percept.visible, percept.confidence = True, confidence
             percept.x_m, percept.y_m = x_m, y_m
             *_, radius_px = self.mirror.sphere((x_m, y_m, self.radius_m), self.radius_m)
-            deviation_px = self.stated_px + self.hidden_share * radius_px * max(0.0, self.whole - confidence)
+            deviation_px = self.stated_px + unsure_px(hidden_shift_px(confidence, radius_px), doubt)
             percept.covariance_m2 = claimed(self.mirror, x_m, y_m, deviation_px, deviation_px)
         return percept
 
     def _blurred(
-        self, at_m: Floats, confidence: float, moved_px: tuple[float, float], noise: list[float]
+        self, at_m: Floats, confidence: float, doubt: float, moved_px: tuple[float, float], noise: list[float]
     ) -> ball_percept_t:
         along, across = (
             np.array([px + self.errors.ball_px * drawn]) for px, drawn in zip(moved_px, noise[:2], strict=True)
         )
         moved_m = blurred(self.mirror, at_m, along, across)
         x_m, y_m = moved_m[0].tolist()
-        return self.on_ground(x_m, y_m, confidence)
+        return self.on_ground(x_m, y_m, confidence, doubt)
 
     def _in_the_air(
         self,

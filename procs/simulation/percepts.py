@@ -96,11 +96,6 @@ class PerceptsConfig(Config):
     least_visible: float = Setting(default=0.4, gt=0.0, le=1.0)
     """Least visible part of a ball or a robot that is found; also the confidence in a ball that is not there.
     ER-Force's threshold."""
-    whole_ball: float = Setting(default=0.9, gt=0.0, le=1.0)
-    """Visible part of a ball from which it counts as whole. An estimate."""
-    hidden_share: float = Setting(default=0.5, ge=0.0, le=2.0)
-    """Growth of a ball's stated standard deviation, as a share of its radius in the picture times the part of a whole
-    ball that is hidden. As the detector has it."""
     beyond_line_px: float = Setting(default=2.5, ge=0.0, le=50.0)
     """Pixels of the picture that the detector needs beyond a line. Fitted to rendered pictures."""
     beyond_robot_px: float = Setting(default=4.0, ge=0.0, le=50.0)
@@ -187,8 +182,6 @@ class Percepts(Component):
             self._errors,
             self.config.least_visible,
             self._stated.ball_px,
-            self.config.whole_ball,
-            self.config.hidden_share,
         )
         self._lines = line_scan(self.config.field)
 
@@ -202,10 +195,9 @@ class Percepts(Component):
             at_m = _seen_from(own, np.array([(truth.ball_x_m, truth.ball_y_m)]))
             robot, radius_m = self.config.robot, self.config.ball.radius_m
             bodies_m = robots_m if truth.ball_z_m <= robot.height_m else robots_m[:0]
-            visible, aside_m = glimpse_of(at_m[0], radius_m, bodies_m, robot.radius_m)
-            seen_m = at_m + aside_m / max(float(np.hypot(*at_m[0])), radius_m) * np.array(((-at_m[0, 1], at_m[0, 0]),))
-            (along,), (across,) = self._moved(seen_m, shake_px, truth.ball_z_m + radius_m)
-            percept = self._ball_sight.found(seen_m, truth.ball_z_m, visible, (along, across), noise)
+            glimpse = glimpse_of(at_m[0], radius_m, bodies_m, robot.radius_m)
+            (along,), (across,) = self._moved(at_m, shake_px, truth.ball_z_m + radius_m)
+            percept = self._ball_sight.found(at_m, truth.ball_z_m, glimpse, (along, across), noise)
         if phantom < -math.expm1(-errors.ball_phantoms_1_s * passed_s):
             least_m = self.config.ball_phantom_m
             range_m, angle_rad = least_m + distance * (self._ball_reach_m - least_m), direction * math.tau

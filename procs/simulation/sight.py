@@ -37,6 +37,8 @@ class Glimpse(NamedTuple):
     """Part (0..1) of its disc."""
     aside_m: float
     """Middle of that part, to the left of the ball's own."""
+    one_edge: bool
+    """Whether what is hidden lies on one side only, or nothing is hidden."""
 
 
 def glimpse_of(ball_m: Floats, ball_radius_m: float, bodies_m: Floats, body_radius_m: float) -> Glimpse:
@@ -55,14 +57,16 @@ def glimpse_of(ball_m: Floats, ball_radius_m: float, bodies_m: Floats, body_radi
             middle_rad = math.atan2(left_m, along_m)
             side_rad = math.asin(min(1.0, body_radius_m / math.hypot(x_m, y_m)))
             covered.append(((middle_rad - side_rad) / half_rad, (middle_rad + side_rad) / half_rad))
-    visible, moment, begin = 0.0, 0.0, -1.0
+    parts, begin = [], -1.0
     for first, last in (*sorted(covered), (1.0, 1.0)):
         end = min(1.0, first)
         if end > begin:
-            visible += _disc_area(end) - _disc_area(begin)
-            moment += _disc_moment(end) - _disc_moment(begin)
+            parts.append((begin, end))
         begin = max(begin, last)
-    return Glimpse(visible, ball_radius_m * moment / visible if visible else 0.0)
+    visible = sum(_disc_area(end) - _disc_area(begin) for begin, end in parts)
+    moment = sum(_disc_moment(end) - _disc_moment(begin) for begin, end in parts)
+    one_edge = len(parts) == 1 and (parts[0][0] == -1.0 or parts[0][1] == 1.0)
+    return Glimpse(visible, ball_radius_m * moment / visible if visible else 0.0, one_edge)
 
 
 def _disc_area(x: float) -> float:

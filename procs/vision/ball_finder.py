@@ -10,24 +10,27 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from procs.model.algebra import Floats, median, weighted_mean
+from procs.model.algebra import Floats
 from procs.model.ball import BALL
-from procs.vision.colours import ColourRange, Mask, Picture, to_hsv
+from procs.vision.ball_blob import Blob, blob_in
+from procs.vision.colours import ColourRange, Picture, to_hsv
 from procs.vision.mirror import Mirror
 from procs.vision.uncertainty import ground_covariance, sphere_covariance
 
 _STEP_PX = 2  # the first search looks at every second pixel of every second row
 _MARGIN_PX = 2  # around a blob of the first search, so that the full picture shows its rim
 _CANDIDATES = 4  # so many blobs, the largest ones, are examined
-_LEAST_SOLID = 0.5  # of a blob's area must be of the ball's colour; the rest is its rim
 _MOST_SPREAD = 1.6  # mean square distance of a blob's pixels from its middle, as a multiple of a disc's
 _WHOLE_SPREAD = 1.02  # the same of a whole ball in a picture
 _SPREAD_PX2 = 2.0  # what noise adds to that at most, times the square of the radius in the picture
-_FULL_FIT = 0.1  # share of a ball's area that noise alone may take away
+_WHOLE_FIT = 0.985  # share of the expected area that pictures show of a whole ball
+_HIDDEN_SHIFT = 0.82
+"""Shift of the middle of what is seen of a ball that a robot hides in part, as a share of its radius times the hidden
+part of that area. Fitted, as the area, to rendered pictures that show 0.4 to 1 of a ball."""
+_LEAST_DOUBT = 0.07  # about the side on which a robot hides a ball: about the size of the shift
+LEAST_TOLD_PX = 3.0  # radius in the picture of a ball whose blob tells that side
 _HIDDEN_SHARE = 2.6
 """Relative error of the area of a ball that a robot hides in part, divided by what that adds to its spread."""
-_LEAST_WARMTH = 30.0  # red minus blue, in levels of 255, above which this difference separates a ball from the rest
-_FAINT = 0.15  # share of a pixel; a pixel of which the ball covers less counts as noise
 _AREA_PX = 0.2  # relative deviation of an area, times the radius in the picture
 _NEAREST_M = 0.3  # from the viewpoint; only the robot itself is nearer
 IN_THE_AIR = 0.8  # confidence of a ball in the air, which is rarer than one on the ground
@@ -69,14 +72,14 @@ def area_share(spread: float, radius_px: float) -> float:
     return _AREA_PX / radius_px + _HIDDEN_SHARE * max(0.0, spread - _WHOLE_SPREAD)
 
 
-@dataclass(frozen=True)
-class _Blob:
-    """An area of the ball's colour: centre, size, and mean square distance of its pixels from the centre."""
+def hidden_shift_px(fit: float, radius_px: float) -> float:
+    """Returns the shift of what is seen of a ball on the ground whose blob has this share of the expected area."""
+    return _HIDDEN_SHIFT * radius_px * max(0.0, _WHOLE_FIT - fit)
 
-    column: float
-    row: float
-    area_px: float
-    spread_px2: float
+
+def unsure_px(shift_px: float, doubt: float) -> float:
+    """Returns what such a shift adds to the standard deviation of the ball's place; `doubt` (0..1) about its side."""
+    return shift_px * math.sqrt(0.5) * max(_LEAST_DOUBT, doubt)
 
 
 @dataclass(frozen=True)
@@ -111,25 +114,13 @@ class BallFinder:
         sightings = [self._sighting(self._blob(pixels, blobs[i])) for i in largest]
         return sorted((s for s in sightings if s is not None), key=lambda s: -s.confidence)
 
-    def _blob(self, pixels: Picture, box: cv2.typing.MatLike) -> _Blob | None:
+    def _blob(self, pixels: Picture, box: cv2.typing.MatLike) -> Blob | None:
         """Measures a blob of the coarse picture in the full one."""
         left, top, width, height = (int(edge) * _STEP_PX for edge in box[: cv2.CC_STAT_AREA])
         right, bottom = left + width + _MARGIN_PX, top + height + _MARGIN_PX
-        left, top = max(left - _MARGIN_PX, 0), max(top - _MARGIN_PX, 0)
-        window = pixels[top:bottom, left:right]
-        solid = self.colour.mask(to_hsv(window))
-        cover = _cover(window, solid)
-        area_px = float(cover.sum())
-        if solid.sum() < _LEAST_SOLID * area_px:
-            return None
-        in_column, in_row = cover.sum(axis=0), cover.sum(axis=1)
-        columns = np.arange(left, left + len(in_column), dtype=np.float64)
-        rows = np.arange(top, top + len(in_row), dtype=np.float64)
-        column, row = weighted_mean(columns, in_column), weighted_mean(rows, in_row)
-        spread_px2 = weighted_mean((columns - column) ** 2, in_column) + weighted_mean((rows - row) ** 2, in_row)
-        return _Blob(column, row, area_px, spread_px2)
+        return blob_in(pixels, self.colour, left - _MARGIN_PX, top - _MARGIN_PX, right, bottom)
 
-    def _sighting(self, blob: _Blob | None) -> BallSighting | None:
+    def _sighting(self, blob: Blob | None) -> BallSighting | None:
         """Returns the ball at a blob; None if size or shape do not fit."""
         if blob is None:
             return None
@@ -141,16 +132,35 @@ class BallFinder:
                 return self._on_ground(blob, x_m, y_m, expected_px, fit)
         return self._in_the_air(blob)
 
-    def _on_ground(self, blob: _Blob, x_m: float, y_m: float, expected_px: float, fit: float) -> BallSighting | None:
+    def _on_ground(self, blob: Blob, x_m: float, y_m: float, expected_px: float, fit: float) -> BallSighting | None:
         """Returns the ball on the ground at a blob; None if distance, size or shape do not fit."""
         confidence = min(fit, 1 / fit)
         if math.hypot(x_m, y_m) > self.farthest_m or confidence < self.least_fit or not _is_round(blob, expected_px):
             return None
-        # A hidden share of the area shifts the centre by up to the same share of the radius; half of that is expected.
-        deviation_px = self.deviation_px + expected_px * max(1.0 - fit - _FULL_FIT, 0.0) / 2
+        shift_px = hidden_shift_px(fit, expected_px)
+        side, doubt = self._hidden_side(blob, shift_px, expected_px)
+        if side and (place := self._locate(*self._beside(blob, side * shift_px))) is not None:
+            x_m, y_m, _ = place
+        deviation_px = self.deviation_px + unsure_px(shift_px, doubt)
         return BallSighting(x_m, y_m, 0.0, ground_covariance(self.mirror, x_m, y_m, deviation_px), confidence)
 
-    def _in_the_air(self, blob: _Blob) -> BallSighting | None:
+    def _hidden_side(self, blob: Blob, shift_px: float, radius_px: float) -> tuple[int, float]:
+        """Returns the side on which something upright hides a part of a ball, and the doubt about it, 0..1.
+
+        1: on the left; -1: on the right; 0: unknown, or it is hidden from both sides.
+        """
+        if not shift_px or radius_px < LEAST_TOLD_PX:
+            return 0, 1.0
+        left, right = self._beside(blob, shift_px), self._beside(blob, -shift_px)
+        return blob.likelier_disc(left, right, radius_px)
+
+    def _beside(self, blob: Blob, left_px: float) -> tuple[float, float]:
+        """Returns column and row so far to the left of a blob's middle, across the ray from the picture's centre."""
+        ahead_px, aside_px = self.mirror.centre_px - blob.row, self.mirror.centre_px - blob.column
+        per_px = left_px / max(math.hypot(ahead_px, aside_px), 1.0)
+        return blob.column - ahead_px * per_px, blob.row + aside_px * per_px
+
+    def _in_the_air(self, blob: Blob) -> BallSighting | None:
         """Returns the ball in the air that has the size of a blob; None if place or shape do not fit."""
         radius_px = math.sqrt(blob.area_px / math.pi)
         if not self.mirror.shows_all(blob.column, blob.row, radius_px):
@@ -177,21 +187,6 @@ class BallFinder:
         return (float(x_m), float(y_m), radius_px) if math.isfinite(x_m) else None
 
 
-def _is_round(blob: _Blob, radius_px: float) -> bool:
+def _is_round(blob: Blob, radius_px: float) -> bool:
     """Returns whether a blob is as compact as a disc of this radius, apart from noise."""
     return blob.spread_px2 <= _MOST_SPREAD * radius_px**2 / 2
-
-
-def _cover(window: Picture, solid: Mask) -> Floats:
-    """Returns the share of each pixel, 0..1, that the ball covers; `solid` marks the pixels of its colour.
-
-    For an orange ball, red minus blue measures the share: this difference is close to 0 on carpet, lines and robots.
-    For a ball of another colour, a pixel counts wholly or not at all.
-    """
-    warmth: Floats = window[..., 2].astype(np.float64) - window[..., 0]
-    full = median(warmth[solid])
-    if full < _LEAST_WARMTH:
-        return solid.astype(np.float64)
-    cover = (warmth / full).clip(0.0, 1.0)
-    cover[cover < _FAINT] = 0.0
-    return cover

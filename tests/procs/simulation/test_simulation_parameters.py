@@ -37,8 +37,6 @@ def percepts(**settings: Any) -> list[bytes]:
     ("setting", "usual", "other"),
     [
         ("least_visible", 0.4, 0.9),
-        ("whole_ball", 0.9, 0.5),
-        ("hidden_share", 0.5, 1.0),
         ("beyond_line_px", 2.5, 20.0),
         ("beyond_robot_px", 4.0, 40.0),
         ("ball_phantom_m", 0.5, 2.0),

@@ -35,10 +35,8 @@ class Holding(Component):
 
 
 @pytest.mark.parametrize("rendered", [False, True])
-@pytest.mark.parametrize(
-    ("turned_deg", "found", "aside_m"), [(60, 40, 0.0), (105, 40, 0.022), (120, 40, 0.04), (135, 0, 0.0)]
-)
-def test_ball_that_another_robot_holds(rendered: bool, turned_deg: float, found: int, aside_m: float) -> None:
+@pytest.mark.parametrize(("turned_deg", "found"), [(60, 40), (105, 40), (120, 40), (135, 0)])
+def test_ball_that_another_robot_holds(rendered: bool, turned_deg: float, found: int) -> None:
     """The robot hides more and more of it before the middle of the ball is behind the whole robot."""
     system = seen_through(rendered, Holding, turned_deg=turned_deg)
     system.tick(40)
@@ -47,7 +45,7 @@ def test_ball_that_another_robot_holds(rendered: bool, turned_deg: float, found:
     assert len(lefts_m) == pytest.approx(found, abs=6)
     if found:
         true_m = ROBOT.held_ball_m(BALL) * math.sin(math.radians(turned_deg))
-        assert np.mean(lefts_m) == pytest.approx(true_m + aside_m, abs=0.01)
+        assert np.mean(lefts_m) == pytest.approx(true_m, abs=0.005)
 
 
 @pytest.mark.parametrize("away_m", [1.0, 2.0, 4.0])

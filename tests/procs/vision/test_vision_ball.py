@@ -10,6 +10,7 @@ import pytest
 from procs.model.algebra import Floats
 from procs.model.expected_errors import EXPECTED
 from procs.model.field import Field
+from procs.model.robot import ROBOT
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.sensor_noise import SensorNoise
 from procs.simulation.rendering.shapes import Bodies
@@ -132,14 +133,40 @@ def test_ball_behind_a_robot_is_not_seen() -> None:
     assert FINDER.find(renderer().render(Scene(own, [(-2.0, 2.0, CYAN)], (-1.2, 2.0, 0.11)))) is None
 
 
-def test_half_hidden_ball_is_less_certain() -> None:
-    own, ball_m = Pose(-3.0, 2.0, 0.0), (0.0, 2.0, 0.11)
-    whole = FINDER.find(renderer().render(Scene(own, [], ball_m)))
-    half = FINDER.find(renderer().render(Scene(own, [(-1.5, 2.26, CYAN)], ball_m)))
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("distance_m", [0.7, 1.0, 2.0, 4.0])
+@pytest.mark.parametrize("visible", [0.5, 0.7, 0.9])
+def test_half_hidden_ball_is_found_where_it_lies(distance_m: float, visible: float, side: float) -> None:
+    """The middle of what is seen is up to 4 cm further from the robot that hides the rest."""
+    rng, left_m, normed = np.random.default_rng(round(100 * distance_m)), [], []
+    edge_m = {0.5: 0.0, 0.7: 0.035, 0.9: 0.075}[visible]  # so far beside the ball's middle the hidden part begins
+    robot_m = 0.6 * distance_m
+    beside_m = side * (math.hypot(robot_m, ROBOT.radius_m) * math.asin(edge_m / distance_m) + ROBOT.radius_m)
+    for _ in range(20):
+        scene = Scene(Pose(0.5, 2.0, 0.0), [(0.5 + robot_m, 2.0 + beside_m, MAGENTA)], (0.5 + distance_m, 2.0, 0.11))
+        ball = FINDER.find(picture(scene, rng))
+        assert ball is not None
+        assert ball.confidence == pytest.approx(visible, abs=0.12)
+        left_m.append(ball.y_m)
+        error_m = np.array((ball.x_m - distance_m, ball.y_m))
+        normed.append(float(error_m @ np.linalg.solve(ball.covariance_m2, error_m)))
+    assert abs(np.mean(left_m)) < 0.004
+    assert np.mean(normed) < 2.0
+
+
+def test_ball_hidden_from_both_sides_is_less_certain() -> None:
+    own, ball_m, rng = Pose(-3.0, 2.0, 0.0), (0.0, 2.0, 0.11), np.random.default_rng(1)
+    left, right = (-1.2, 2.288, CYAN), (-1.2, 1.712, MAGENTA)
+    whole, one_side, both_sides = (
+        FINDER.find(picture(Scene(own, robots, ball_m), rng)) for robots in ([], [left], [left, right])
+    )
     assert whole is not None
-    assert half is not None
-    assert half.confidence < 0.8 < whole.confidence
-    assert half.covariance_m2[0, 0] > 2 * whole.covariance_m2[0, 0]
+    assert one_side is not None
+    assert both_sides is not None
+    assert both_sides.confidence < one_side.confidence < whole.confidence
+    assert one_side.covariance_m2[1, 1] < 1.5 * whole.covariance_m2[1, 1]
+    assert both_sides.covariance_m2[1, 1] > 3 * whole.covariance_m2[1, 1]
+    assert both_sides.y_m**2 < 2 * both_sides.covariance_m2[1, 1]
 
 
 @pytest.mark.parametrize(
