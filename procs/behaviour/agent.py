@@ -17,6 +17,7 @@ from procs.behaviour.game import Game, frame_of, game_of
 from procs.behaviour.order import Order
 from procs.behaviour.skills.book import SKILLS
 from procs.behaviour.stalls import NO_JOBS, Stalls
+from procs.behaviour.steady_role import SteadyRole
 from procs.behaviour.tactics import Tactics, leave_field
 from procs.behaviour.view import View, view_of
 from procs.model.ball import BALL, BallModel
@@ -85,6 +86,7 @@ class Agent(Component):
         self._tactics = Tactics(self.config.field)
         self._company = Company()
         self._stalls = Stalls()
+        self._steady = SteadyRole()
         self._jobs: Mapping[str, roles.Job] = NO_JOBS
         self._call: Call | None = None
         self.config_changed()
@@ -133,7 +135,7 @@ class Agent(Component):
             job = job_among_silent(view, rank_of(self._robot, players, game.sent_off), field, game)
         else:
             self._jobs = roles.assign(view, field, self.config.use_pressing, game, kept, stalled)
-            job = self._jobs.get(self._robot, idle)
+            job = self._steady.job(self._jobs.get(self._robot, idle), view, game.free_play, duration_s)
         if not self.config.use_roles and game.free_play and job.role != roles.GOALKEEPER:
             job = roles.Job(roles.ATTACKER, view.ball.place)
         order = self._tactics.decide(view, game, job, held, duration_s)

@@ -7,6 +7,7 @@ import numpy as np
 
 from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import match_event_t
+from procs.behaviour.roles import GOALKEEPER
 from procs.evaluation.beliefs import Samples
 from procs.evaluation.piece import Piece
 from procs.model.field import Point
@@ -35,6 +36,7 @@ def conducted(piece: Piece) -> Samples:
         "distance violated at restarts": np.array(distances, np.float64),
         "half violated at kick-offs": np.array(halves, np.float64),
         "restarts taken within 7 s": np.array(_taken(piece), np.float64),
+        "role changes of a field player": np.array([_role_changes(piece)]),
         "passes controlled by the receiver": np.array(_passes(piece), np.float64),
     }
 
@@ -79,6 +81,19 @@ def _taken(piece: Piece) -> list[bool]:
         if team is not Team.NONE and (kicked or len(running) == len(in_time)):
             taken.append(kicked)
     return taken
+
+
+def _role_changes(piece: Piece) -> tuple[int, float]:
+    """Returns how often robots took another role in play, and the minutes that they played, all together."""
+    changes, ticks = 0, 0
+    for roles in piece.by_robot.get("role", {}).values():
+        for tick in piece.game:
+            both = roles.get(tick - 1), roles.get(tick)
+            running = piece.game[tick].state == State.PLAY and not piece.game[tick].stopped
+            if running and both[0] and both[1] and GOALKEEPER not in (both[0].role, both[1].role):
+                ticks += 1
+                changes += both[0].role != both[1].role
+    return changes, ticks * piece.period_s / 60
 
 
 def _passes(piece: Piece) -> list[bool]:

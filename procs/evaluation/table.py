@@ -163,6 +163,7 @@ MEASURES = [
     Measure("distance violated at restarts", share, "share", "0"),
     Measure("half violated at kick-offs", share, "share", "0"),
     Measure("restarts taken within 7 s", share, "share", ">= 0.95"),
+    Measure("role changes of a field player", rate, "/min", ""),
     Measure("passes controlled by the receiver", share, "share", ">= 0.80"),
     Measure("captures that bounce", share, "share", ""),
     Measure("ball free", mean, "share", ""),

@@ -3,7 +3,7 @@
 import pytest
 
 from lcmtypes.robot import kicker_state_t
-from lcmtypes.soccer import game_state_t, match_event_t, skill_status_t
+from lcmtypes.soccer import game_state_t, match_event_t, role_t, skill_status_t
 from procs.evaluation.conduct import conducted
 from procs.evaluation.piece import Piece
 from procs.evaluation.possession import possession
@@ -176,3 +176,20 @@ def test_goals_are_those_of_both_teams_together(cyan: int, magenta: int) -> None
     found = conducted(made) | possession(made)
     assert found["goals"].tolist() == [[cyan + magenta, made.minutes]]
     assert found["goals"][0, 0] == found["goals of cyan"][0, 0] + found["goals of magenta"][0, 0]
+
+
+def test_role_changes_count_in_play_and_without_goalkeepers() -> None:
+    made = piece([robot("cyan2", 0.0, 0.0)], ticks=6, vx_m_s=0.0)
+    told = {
+        "cyan1": ["goalkeeper"] * 6,
+        "cyan2": ["attacker", "defender", "defender", "attacker", "attacker", "passer"],
+    }
+    roles = made.by_robot["role"] = {}
+    for name, each in told.items():
+        roles[name] = {FIRST + number: role_t(role=role) for number, role in enumerate(each)}
+    for tick in made.truth:
+        made.game[tick] = playing()
+    made.game[FIRST + 3].stopped = True
+    changes, minutes = conducted(made)["role changes of a field player"][0]
+    assert changes == 2
+    assert minutes == pytest.approx(4 * 0.05 / 60)
