@@ -38,15 +38,15 @@ class BaseConfig(Config):
     robot: RobotModel = ROBOT
     """Geometry of the robot, and the limit of its wheels."""
     speed_m_s: PositiveFloat = 3.5
-    """Highest speed over the ground."""
+    """Highest speed over the ground. That of the wheels."""
     acceleration_m_s2: PositiveFloat = 3.0
-    """Highest acceleration over the ground."""
+    """Highest acceleration over the ground. An estimate of the wheels' grip; Falcons use 1.0, Tribots 5.0."""
     braking_m_s2: PositiveFloat = 4.0
-    """Highest deceleration over the ground."""
+    """Highest deceleration over the ground. Tribots: 4.0."""
     omega_rad_s: PositiveFloat = 6.0
-    """Highest turning speed."""
+    """Highest turning speed. An estimate; Tribots 3, CAMBADA 9.4."""
     angular_acceleration_rad_s2: PositiveFloat = 20.0
-    """Highest change of the turning speed."""
+    """Highest change of the turning speed. An estimate; Tribots 12."""
     command_timeout_s: PositiveFloat = 0.25
     """The robot brakes to a standstill when its newest motor command is older than this."""
     realism: Realism = "realistic"

@@ -1,8 +1,9 @@
 """The field of the middle size league: its measures, lines, marks and goals.
 
 World frame: origin in the centre, x towards the goal that magenta defends in the first half, y to the left of x,
-metres. A `side` is -1.0 for the half and goal of cyan in the first half, and +1.0 for those of magenta. The letters are
-those of the rule book's field drawing; field and areas are measured to the outer edges of their lines.
+metres. A `side` is -1.0 for the half and goal of cyan in the first half, and +1.0 for those of magenta. The letters
+and their measures are those of the field drawing in the rule book of 2023 (24.1), as MRA-components has them; field
+and areas are measured to the outer edges of their lines.
 """
 
 import math
@@ -102,13 +103,13 @@ class Field(BaseModel):
     restart_offset_m: Measure = 3.5
     """Distance Q from the middle of the field to the restart marks beside it, in metres."""
     goal_width_m: Measure = 2.4
-    """Clear width of the goals between the posts, in metres."""
+    """Clear width of the goals between the posts, in metres. Falcons; the rule book of 2016 has 2.0 m."""
     goal_depth_m: Measure = 0.6
-    """Depth of the goals from the outer edge of the goal line to the net, in metres."""
+    """Depth of the goals from the outer edge of the goal line to the net, in metres. 2016: 0.5 m or more."""
     goal_height_m: Measure = 1.0
-    """Clear height of the goals under the bar, in metres."""
+    """Clear height of the goals under the bar, in metres. Rule book of 2016."""
     post_diameter_m: Measure = 0.125
-    """Diameter of the round goal posts, in metres."""
+    """Diameter of the round goal posts, in metres. Rule book of 2016."""
 
     @field_validator(*_LIMITS)
     @classmethod
