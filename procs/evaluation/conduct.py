@@ -1,12 +1,13 @@
 """Quality of the robots' play: collisions, distances at restarts, passes, goals."""
 
 import itertools
+import math
 from collections.abc import Iterator
 
 import numpy as np
 
 from lcmtypes.robot import kicker_state_t
-from lcmtypes.soccer import match_event_t
+from lcmtypes.soccer import ground_truth_t, match_event_t
 from procs.behaviour.roles import GOALKEEPER
 from procs.evaluation.beliefs import Samples
 from procs.evaluation.piece import Piece
@@ -22,6 +23,7 @@ _HEAVY_M_S, _LIGHT_M_S = 3.0, 1.0
 _CONTROL_S = 0.3
 _FLIGHT_S = 4.0
 _TAKEN_S = 7.0
+_LIES_M = 0.1  # a ball that has moved less still lies on its spot
 
 
 def conducted(piece: Piece) -> Samples:
@@ -42,19 +44,41 @@ def conducted(piece: Piece) -> Samples:
 
 
 def _restarts(piece: Piece) -> tuple[list[bool], list[bool]]:
-    """Returns whether distances, and halves of the field, were violated when each set piece was released."""
+    """Returns whether distances, and halves of the field, were violated at each set piece, until the ball moved."""
     distances, halves = [], []
-    for tick in _released(piece):
-        game, truth = piece.game[tick], piece.truth.get(tick)
-        if truth:
-            playing = [robot for robot in truth.robots if robot.name not in game.sent_off]
-            middles = {f"{piece.team(robot.name)}{number_in(robot)}": Point(robot.x_m, robot.y_m) for robot in playing}
-            restart = Restart(State(game.state), Team(game.state_team), Point(truth.ball_x_m, truth.ball_y_m))
-            ends = Ends.told(game.cyan_side)
-            distances.append(bool(too_near(restart, middles, ends, piece.measures)))
-            if restart.state is State.KICK_OFF:
-                halves.append(bool(in_wrong_half(restart, middles, ends)))
+    for released in _released(piece):
+        near, crossed = [], []
+        for tick in _untaken(piece, released):
+            restart, middles, ends = _standing(piece, tick, piece.truth[released])
+            near += too_near(restart, middles, ends, piece.measures)
+            crossed += in_wrong_half(restart, middles, ends)
+        if released in piece.truth:
+            distances.append(bool(near))
+            if piece.game[released].state == State.KICK_OFF:
+                halves.append(bool(crossed))
     return distances, halves
+
+
+def _untaken(piece: Piece, released: int) -> Iterator[int]:
+    """Yields the ticks of a set piece from its release on while its ball lies where it was laid."""
+    state = piece.game[released].state
+    for tick in itertools.count(released):
+        if tick not in piece.truth or tick not in piece.game:
+            return
+        game, laid, ball = piece.game[tick], piece.truth[released], piece.truth[tick]
+        moved_m = math.dist((ball.ball_x_m, ball.ball_y_m), (laid.ball_x_m, laid.ball_y_m))
+        if game.stopped or game.state != state or moved_m > _LIES_M:
+            return
+        yield tick
+
+
+def _standing(piece: Piece, tick: int, laid: ground_truth_t) -> tuple[Restart, dict[str, Point], Ends]:
+    """Returns a set piece whose ball was `laid`, the middles of the robots on the field in a tick, and their ends."""
+    game, truth = piece.game[tick], piece.truth[tick]
+    playing = [robot for robot in truth.robots if robot.name not in game.sent_off]
+    middles = {f"{piece.team(robot.name)}{number_in(robot)}": Point(robot.x_m, robot.y_m) for robot in playing}
+    spot = Point(laid.ball_x_m, laid.ball_y_m)
+    return Restart(State(game.state), Team(game.state_team), spot), middles, Ends.told(game.cyan_side)
 
 
 def _released(piece: Piece) -> Iterator[int]:

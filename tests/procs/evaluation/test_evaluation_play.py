@@ -24,6 +24,19 @@ def test_distances_count_when_a_set_piece_is_released(others: list[tuple[float, 
     assert conducted(made)["distance violated at restarts"].tolist() == [violated]
 
 
+@pytest.mark.parametrize(("ball_m", "violated"), [(0.0, True), (0.4, False)])
+def test_distances_count_until_the_ball_moves(ball_m: float, violated: bool) -> None:
+    """The rival comes near half a second after the release."""
+    made = piece([robot("cyan1", -0.5, 0.0), robot("magenta1", 3.1, 0.0)], ticks=20, vx_m_s=0.0)
+    for tick in made.truth:
+        game = made.game[tick] = game_state_t()
+        game.state, game.state_team, game.stopped = game_state_t.FREE_KICK, game_state_t.TEAM_CYAN, tick == FIRST
+        if tick >= FIRST + 10:
+            made.truth[tick].ball_x_m = ball_m
+            made.truth[tick].robots = [robot("cyan1", -0.5, 0.0), robot("magenta1", 2.9, 0.0)]
+    assert conducted(made)["distance violated at restarts"].tolist() == [violated]
+
+
 @pytest.mark.parametrize(("sent_off", "violated"), [([], True), (["magenta2"], False)])
 def test_robots_that_were_sent_off_violate_nothing(sent_off: list[str], violated: bool) -> None:
     made = piece([robot("cyan1", -0.5, 0.0), robot("magenta2", -4.0, 7.5)], ticks=2, vx_m_s=0.0)
