@@ -122,7 +122,7 @@ class Agent(Component):
         kicker, field = self.kicker_state, self.config.field
         held = tells_held(kicker.value, self.clock.since_s(kicker.header.time_us))
         if self._robot in game.sent_off and view.localized:
-            return ABSENT, leave_field(view, field)
+            return ABSENT, leave_field(view, game, field)
         if self.config.strategy == "greedy":
             return greedy.decide(view, game, held, field)
         idle = roles.Job(self.role.value.role or roles.DEFENDER, view.own.place)

@@ -206,6 +206,13 @@ def allowed(place: Point, game: Game, field: Field, bodies: Bodies = USUAL) -> P
     return place
 
 
+def circle(game: Game) -> Disc | None:
+    """Returns the circle around the ball of a set piece that robots other than the taker keep out of; None in play."""
+    if game.free_play or not game.state.is_set_piece:
+        return None
+    return Disc(game.spot, _keep_off_m(game) - _TOO_NEAR_M)
+
+
 def next_step(
     own: Point, place: Point, game: Game, field: Field, others: Iterable[Robot] = (), bodies: Bodies = USUAL
 ) -> Point:

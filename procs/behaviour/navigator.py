@@ -1,23 +1,27 @@
 """Drives the robot to its target, around obstacles and within its limits."""
 
 import math
+from collections.abc import Callable, Sequence
 from functools import partial
 
-from fwk import Clock, Component, Config, Reads, Writes
+from fwk import Clock, Component, Config, Reads, Writes, channel
 from lcmtypes.robot import kicker_state_t, motor_command_t, odometry_t
-from lcmtypes.soccer import drive_target_t, navigator_state_t, world_model_t
-from procs.behaviour import motion, obstacles
+from lcmtypes.soccer import drive_target_t, game_state_t, navigator_state_t, world_model_t
+from procs.behaviour import formation, motion, obstacles
 from procs.behaviour.bodies import Bodies
+from procs.behaviour.game import game_of
 from procs.behaviour.motion import Limits, Pose
-from procs.behaviour.path import Way, find_way
+from procs.behaviour.path import Disc, Way, find_way
 from procs.behaviour.permitted import Permitted, is_field_player
 from procs.behaviour.velocity_obstacles import safe_velocity
+from procs.behaviour.view import Frame
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
 from procs.model.geometry import clamp, plausible, wrap_rad
 from procs.model.kicker import tells_held
 from procs.model.kinematics import STANDSTILL, Velocity
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel, number_of_player
+from procs.model.teams import team_number_of_player
 
 _FORWARD = 0.8  # cosine of the largest angle between a change of velocity towards the ball and the heading
 
@@ -56,6 +60,7 @@ class Navigator(Component):
     drive_target: Reads[drive_target_t]
     blind_drive: Reads[motor_command_t]
     world_model: Reads[world_model_t]
+    game_state: Reads[game_state_t] = channel("world/game_state")
     odometry: Reads[odometry_t]
     kicker_state: Reads[kicker_state_t]
     motor_command: Writes[motor_command_t]
@@ -129,7 +134,8 @@ class Navigator(Component):
         around = obstacles.discs(model, config.field, self._bodies, target.avoid_robots, target.avoid_ball)
         turn = self._goals.turning_place(pose.place, place, barred, around)
         possible = partial(self._possible, pose.place, barred)
-        way = find_way(pose.place, turn, around, self._direction_rad, possible)
+        circle = self._circle(place)
+        way = find_way(pose.place, turn, [*around, *circle], self._direction_rad, possible)
         if turn != place:
             way = way._replace(length_m=way.length_m + math.dist(turn, place))
         self._direction_rad = way.direction_rad
@@ -141,8 +147,10 @@ class Navigator(Component):
         # Where the wall keeps a robot from turning, its wheels report a turn all the same, and the robot loses its way.
         at_wall = obstacles.touches_wall(Point(model.x_m, model.y_m), config.field, self._bodies)
         wanted = self._velocity(target, way, 0.0 if at_wall else turn_rad)
+        allowed = partial(self._outside, circle, pose.place)
+        wanted = Velocity(*allowed(Point(wanted.vx_m_s, wanted.vy_m_s)), wanted.omega_rad_s)
         if target.avoid_robots:
-            wanted = self._give_way(wanted, pose.place, model)
+            wanted = self._give_way(wanted, pose.place, model, allowed)
         self._before = self._within_walls(self._before, pose.place)
         wanted = self._within_walls(wanted, pose.place)
         self._command(wanted, pose.heading_rad)
@@ -150,6 +158,18 @@ class Navigator(Component):
     def _possible(self, start: Point, barred: bool, end: Point) -> bool:
         """Returns whether a detour may turn at its end."""
         return obstacles.inside_walls(end, self.config.field, self._bodies) and self._goals.is_open(start, end, barred)
+
+    def _circle(self, place: Point) -> list[Disc]:
+        """Returns the circle of a set piece; none for a robot that is sent into it, or has its ball: the taker."""
+        team = team_number_of_player(self._robot, self.config.players)
+        circle = formation.circle(game_of(self.game_state.value, team, Frame(1.0)))
+        sent_in = circle is not None and math.dist(place, circle.middle) <= circle.radius_m
+        return [] if circle is None or sent_in or self._holds_ball else [circle]
+
+    def _outside(self, circle: Sequence[Disc], place: Point, velocity_m_s: Point) -> Point:
+        for disc in circle:
+            velocity_m_s = obstacles.braked_at_disc(velocity_m_s, place, disc, self.config.limits.braking_m_s2)
+        return velocity_m_s
 
     def _within_walls(self, velocity: Velocity, place: Point) -> Velocity:
         config = self.config
@@ -159,7 +179,9 @@ class Navigator(Component):
         )
         return Velocity(*slower, velocity.omega_rad_s)
 
-    def _give_way(self, wanted: Velocity, place: Point, model: world_model_t) -> Velocity:
+    def _give_way(
+        self, wanted: Velocity, place: Point, model: world_model_t, allowed: Callable[[Point], Point]
+    ) -> Velocity:
         players = self.config.players
         number = number_of_player(self._robot, players)
         movers = obstacles.movers(model, self.config.limits.latency_s, number, players)
@@ -167,7 +189,7 @@ class Navigator(Component):
         wanted_m_s, apart_m = Point(wanted.vx_m_s, wanted.vy_m_s), obstacles.apart_m(self._bodies)
         limits = self.config.limits
         velocity = safe_velocity(
-            wanted_m_s, now_m_s, place, movers, apart_m, limits.acceleration_m_s2, limits.speed_m_s
+            wanted_m_s, now_m_s, place, movers, apart_m, limits.acceleration_m_s2, limits.speed_m_s, allowed
         )
         return Velocity(*velocity, wanted.omega_rad_s)
 

@@ -9,7 +9,7 @@ from procs.behaviour.path import Disc
 from procs.behaviour.velocity_obstacles import DRIVES_M_S, Mover
 from procs.behaviour.view import Estimate, is_sane
 from procs.model.field import SIDES, Field, Point
-from procs.model.geometry import clamp, plausible
+from procs.model.geometry import bearing_rad, clamp, plausible
 from procs.model.robot import PLAYERS, Player, number_of_mate
 
 _MARGIN_M = 0.12  # room beside a robot that is driven around
@@ -85,6 +85,15 @@ def braked_at_walls(velocity_m_s: Point, place: Point, field: Field, bodies: Bod
     ]
     back_m_s, ahead_m_s, right_m_s, left_m_s = limits_m_s
     return Point(clamp(vx_m_s, -back_m_s, ahead_m_s), clamp(vy_m_s, -right_m_s, left_m_s))
+
+
+def braked_at_disc(velocity_m_s: Point, place: Point, disc: Disc, braking_m_s2: float) -> Point:
+    """Returns the velocity, limited towards the middle of a disc to what a robot at the place can still brake."""
+    room_m, way_rad = math.dist(place, disc.middle) - disc.radius_m, bearing_rad(place, disc.middle)
+    cos, sin = math.cos(way_rad), math.sin(way_rad)
+    towards_m_s = velocity_m_s.x_m * cos + velocity_m_s.y_m * sin
+    excess_m_s = max(0.0, towards_m_s - math.sqrt(2 * braking_m_s2 * max(0.0, room_m)))
+    return Point(velocity_m_s.x_m - excess_m_s * cos, velocity_m_s.y_m - excess_m_s * sin)
 
 
 def _room_m(place: Point, field: Field, bodies: Bodies) -> tuple[float, float, float, float]:

@@ -308,10 +308,15 @@ def _would_run_into_ball(view: View, field: Field) -> bool:
     return view.ball_is_nearer_to(field.goal_centre(-1.0)) and stops_m > away_m - view.bodies.beside_m
 
 
-def leave_field(view: View, field: Field) -> Order:
-    """Returns the order of a robot that was sent off: over the nearer touch line, and to wait there."""
+def leave_field(view: View, game: Game, field: Field) -> Order:
+    """Returns the order of a robot that was sent off: over the nearer touch line, and to wait there.
+
+    Its way keeps the distance to the ball of a set piece.
+    """
     own, bench_m = view.own.place, field.half_length_m - _BENCH_M
     place = Point(clamp(own.x_m, -bench_m, bench_m), math.copysign(field.half_width_m + field.border_m / 2, own.y_m))
+    if game.state.is_set_piece:
+        place = formation.next_step(own, place, game, field, view.others, view.bodies)
     return Order("goto", place, view.own.heading_rad, "leave the field")
 
 

@@ -11,7 +11,7 @@ gentle touch is allowed, because robots that fight for the ball touch each other
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -75,6 +75,7 @@ def safe_velocity(
     apart_m: float,
     change_m_s2: float,
     fastest_m_s: float = math.inf,
+    allowed: Callable[[Point], Point] = lambda velocity_m_s: velocity_m_s,
 ) -> Point:
     """Returns the wanted velocity, or the best one near it that leads to no collision soon.
 
@@ -86,6 +87,7 @@ def safe_velocity(
         apart_m: distance of the middles of two robots that touch.
         change_m_s2: limit of the acceleration.
         fastest_m_s: limit of the speed; neither the wanted nor the present velocity exceeds it.
+        allowed: returns the nearest velocity that leads into no forbidden place; the wanted velocity leads into none.
     """
     near = [mover for mover in movers if math.dist(mover.place, place) < apart_m + _FASTEST_M_S * _HORIZON_S]
     if not near:
@@ -94,7 +96,8 @@ def safe_velocity(
     if others.dangers(np.array([wanted_m_s]), change_m_s2)[0] == 0.0:
         return wanted_m_s
     along = wanted_m_s if math.hypot(*wanted_m_s) > _STANDS_M_S else _away(near, place)
-    candidates = _candidates(wanted_m_s, now_m_s, along, min(_LEAST_M_S, fastest_m_s))
+    found = _candidates(wanted_m_s, now_m_s, along, min(_LEAST_M_S, fastest_m_s))
+    candidates = np.array([allowed(each) for each in found])
     across = (along.x_m * candidates[:, 1] - along.y_m * candidates[:, 0]) / max(_STANDS_M_S, math.hypot(*along))
     costs = np.sqrt(((candidates - wanted_m_s) ** 2).sum(axis=1)) + others.dangers(candidates, change_m_s2)
     costs += _TO_THE_LEFT * np.maximum(0.0, across)
@@ -108,12 +111,12 @@ def _away(movers: Sequence[Mover], place: Point) -> Point:
     return Point(place.x_m - nearest.place.x_m, place.y_m - nearest.place.y_m)
 
 
-def _candidates(wanted_m_s: Point, now_m_s: Point, along: Point, least_m_s: float) -> Floats:
+def _candidates(wanted_m_s: Point, now_m_s: Point, along: Point, least_m_s: float) -> list[Point]:
     """Returns velocities to choose from, around the direction `along`."""
     scale = max(least_m_s, math.hypot(*wanted_m_s)) / max(_STANDS_M_S, math.hypot(*along))
     x, y = along.x_m * scale, along.y_m * scale
-    turned = [(x * cos - y * sin, x * sin + y * cos) for cos, sin in _CHANGES]
-    return np.array([wanted_m_s, *turned, now_m_s, (0.0, 0.0)])
+    turned = [Point(x * cos - y * sin, x * sin + y * cos) for cos, sin in _CHANGES]
+    return [wanted_m_s, *turned, now_m_s, Point(0.0, 0.0)]
 
 
 def _may_brake(mover: Mover, place: Point) -> bool:

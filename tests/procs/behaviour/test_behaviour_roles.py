@@ -13,6 +13,7 @@ from procs.behaviour.tactics import leave_field
 from procs.behaviour.view import Robot, View
 from procs.model.field import SIDES, Field, Point
 from procs.model.game_states import State
+from procs.model.geometry import between
 from procs.model.robot import ABSENT
 from tests.procs.behaviour.behaviour_parts import FIELD, agreed, ball, robot, view
 
@@ -285,8 +286,18 @@ def test_receivers_and_bench_fit_fields_of_all_sizes(length_m: float, width_m: f
             place = set_pieces.receiver_place(variant, game, field)
             assert field.in_field(*place), variant.name
             assert not any(field.in_penalty_area(*place, side) for side in SIDES), variant.name
-    place = leave_field(view(robot("cyan2", field.half_length_m, 1.0), ball(0.0, 0.0)), field).place
+    place = leave_field(view(robot("cyan2", field.half_length_m, 1.0), ball(0.0, 0.0)), Game(), field).place
     assert abs(place.x_m) == field.half_length_m - 3.0
+
+
+def test_robot_that_is_sent_off_keeps_out_of_the_circle() -> None:
+    game = Game(State.FREE_KICK, whose=Whose.THEIRS, spot=Point(0.0, 4.0))
+    for y_m in (0.5, 2.5):  # outside, before the circle, and in it
+        own = robot("cyan2", 0.1, y_m)
+        place = leave_field(view(own, ball(*game.spot)), game, FIELD).place
+        nearest_m = min(math.dist(between(own.place, place, step / 20), game.spot) for step in range(21))
+        assert nearest_m >= min(3.0, math.dist(own.place, game.spot) - 0.01)
+        assert math.dist(place, game.spot) >= 3.0
 
 
 def test_posts_on_the_usual_field_stay_where_they_were() -> None:
