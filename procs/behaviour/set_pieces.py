@@ -93,7 +93,7 @@ def choose(game: Game, rivals: Sequence[Robot], field: Field, bodies: Bodies) ->
         return None
     turn = game.number % len(variants)
     found = [(each.name, receiver_place(each, game, field, bodies)) for each in (*variants[turn:], *variants[:turn])]
-    return max(found, key=lambda each: min(aim.LANE_RAD, _room_rad(game.spot, each[1], rivals, bodies)))
+    return max(found, key=lambda each: min(aim.LANE_RAD, room_rad(game.spot, each[1], rivals, bodies)))
 
 
 def receiver_place(variant: Variant, game: Game, field: Field, bodies: Bodies = USUAL) -> Point:
@@ -101,7 +101,10 @@ def receiver_place(variant: Variant, game: Game, field: Field, bodies: Bodies = 
     return formation.helper_place(variant.place(game, field), game, field, bodies=bodies)
 
 
-def _room_rad(spot: Point, place: Point, rivals: Sequence[Robot], bodies: Bodies) -> float:
+def room_rad(spot: Point, place: Point, rivals: Sequence[Robot], bodies: Bodies) -> float:
+    """Returns the free angle beside the way of a pass to the receiver's place; negative if a rival blocks the way, or
+    stands so near to the place that it gets the ball as soon as the receiver.
+    """
     crowded = any(math.dist(place, rival.place) < _FREE_M for rival in rivals)
     return -math.pi if crowded else aim.lane_rad(spot, place, rivals, bodies)
 

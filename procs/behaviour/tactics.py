@@ -200,7 +200,7 @@ class Tactics:
     def _blocked(self, view: View, game: Game) -> bool:
         if self._planned is None:
             return True
-        return aim.lane_rad(game.spot, self._planned[1], view.opponents, view.bodies) < 0.0
+        return set_pieces.room_rad(game.spot, self._planned[1], view.opponents, view.bodies) < 0.0
 
     def _helper_place(self, view: View, game: Game, job: Job) -> Point:
         """Returns the place of a robot that does not take the set piece; the receiver's is told by the taker."""

@@ -117,6 +117,20 @@ def test_plan_of_a_set_piece_is_kept_once_it_may_be_taken() -> None:
     assert tactics.passing.said.place == before
 
 
+@pytest.mark.parametrize(("share", "aside_m"), [(0.6, 0.0), (1.4, 0.0), (1.0, 0.8)])
+def test_rival_in_the_way_or_at_the_place_changes_the_plan(share: float, aside_m: float) -> None:
+    """The rival comes when the plan stands: before the receiver's place, behind it, or beside it."""
+    game = Game(State.KICK_OFF, stopped=True, whose=Whose.OURS, number=4)
+    tactics, supporter = Tactics(FIELD), robot("cyan3", -2.0, 1.5, role=SUPPORTER)
+    free = view(robot("cyan2", 0.7, 0.0, math.pi), ball(0.0, 0.0), (supporter,))
+    tactics.decide(free, game, job(ATTACKER), False, 0.05)
+    before = tactics.passing.said.place
+    x_m, y_m = between(game.spot, before, share)
+    for _ in range(10):
+        tactics.decide(free._replace(opponents=(robot("", x_m, y_m + aside_m),)), game, job(ATTACKER), False, 0.05)
+    assert math.dist(tactics.passing.said.place, before) > 1.0
+
+
 def test_rival_that_drives_past_does_not_change_the_plan() -> None:
     game = Game(State.KICK_OFF, stopped=True, whose=Whose.OURS, number=4)
     tactics, supporter = Tactics(FIELD), robot("cyan3", -2.0, 1.5, role=SUPPORTER)
