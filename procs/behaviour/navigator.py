@@ -167,6 +167,7 @@ class Navigator(Component):
         return [] if circle is None or sent_in or self._holds_ball else [circle]
 
     def _outside(self, circle: Sequence[Disc], place: Point, velocity_m_s: Point) -> Point:
+        """Returns the velocity, limited to what keeps the robot out of the circle."""
         for disc in circle:
             velocity_m_s = obstacles.braked_at_disc(velocity_m_s, place, disc, self.config.limits.braking_m_s2)
         return velocity_m_s
