@@ -61,7 +61,7 @@ class OwnView:
         Args:
             pose: newest pose.
             odometry: newest odometry.
-            known: False if the pose is an old one.
+            known: False if the pose is an old one, or one where the robot cannot be.
             shaking: growth of the camera's deviations with the speed of the robot.
             before: the view `passed_s` ago.
             passed_s: see `before`.

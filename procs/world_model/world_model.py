@@ -6,7 +6,8 @@ Sources:
 - mates: their own messages, and the own camera when these are late; a mate that does not know its place is left out;
 - opponents: obstacles that the robot and its mates see and that are not robots of the team.
 
-While the robot itself does not know its place, only the sightings of its mates count.
+While the robot itself does not know its place, only the sightings of its mates count. A place far outside the walls is
+none.
 """
 
 from collections.abc import Sequence
@@ -41,7 +42,7 @@ from procs.world_model.team import Mate, PlaceRow, Places, Team
 from procs.world_model.told import mate_of, obstacles_of
 from procs.world_model.world_messages import fill_ball, fill_kick, fill_plan, fill_team_message, fill_world_model
 
-_BEHIND_WALL_M = 1.0  # a mate that believes it is further outside the walls is lost
+_BEHIND_WALL_M = 1.0  # a robot that believes it is further outside the walls is lost
 
 
 class WorldModel(Component):
@@ -86,7 +87,7 @@ class WorldModel(Component):
         config, now_s = self.config, self.clock.now_s
         passed_s = self.clock.since_s(self._last_us) if self._last_us else self.clock.iteration_s
         self._last_us = self.clock.now_us
-        known = self.pose.refreshed
+        known = self.pose.refreshed and self._is_inside_walls(self.pose.value.x_m, self.pose.value.y_m)
         if self.role.refreshed:
             self._role_us = self.clock.now_us
         self._holds = tells_held(self.kicker_state.value, self.clock.since_s(self.kicker_state.header.time_us))
@@ -134,7 +135,9 @@ class WorldModel(Component):
             mate = mate_of(message, now_s) if self._is_of_team(message.robot) else None
             if mate is None or mate.name == self._robot:
                 continue
-            is_wrong = mate.localized and not self._is_inside_walls(mate)  # its sightings are wrong, too
+            is_wrong = mate.localized and not self._is_inside_walls(
+                *mate.position_m.tolist()
+            )  # its sightings are wrong, too
             mate.localized = mate.localized and not is_wrong
             if (mate := self._team.note(mate)) and not is_wrong:
                 told.append((message, mate))
@@ -145,9 +148,9 @@ class WorldModel(Component):
         player = player_of(robot, self.config.players)
         return not (player and self._own_team) or TEAM_NUMBERS[player.team] == self._own_team
 
-    def _is_inside_walls(self, mate: Mate) -> bool:
-        """Returns whether a mate can be where it believes it is: inside the walls, allowing for a large error."""
-        field, (x_m, y_m) = self.config.field, mate.position_m.tolist()
+    def _is_inside_walls(self, x_m: float, y_m: float) -> bool:
+        """Returns whether a robot can be where it believes it is: inside the walls, allowing for a large error."""
+        field = self.config.field
         return field.in_field(x_m, y_m, field.border_m + _BEHIND_WALL_M)
 
     def _follow_ball(

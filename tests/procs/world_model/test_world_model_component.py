@@ -223,6 +223,23 @@ def test_impossible_values_are_ignored(value: float) -> None:
     assert [mate.name for mate in robot.world.mates] == ["cyan3"]
 
 
+@pytest.mark.parametrize(("x_m", "y_m"), [(14.5, 0.0), (0.0, -300.0)])
+def test_robot_far_outside_the_walls_is_lost(x_m: float, y_m: float) -> None:
+    """Its sightings would be wrong, too: a ball that it sees towards the field would seem to be inside."""
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for _ in range(5):
+        robot.sense(np.array((2.0, 0.0)), [])
+        robot.bench.port("pose").put(x_m=x_m, y_m=y_m, heading_rad=3.0, covariance=np.eye(3).tolist(), localized=True)
+        robot.bench.iterate()
+        assert not robot.world.localized
+        assert not robot.world.ball.known
+    assert not any(told.localized or told.ball_visible for told in robot.bench.port("team_message").sent)
+    robot.sense(np.array((2.0, 0.0)), [])
+    robot.bench.iterate()
+    assert robot.world.localized
+    assert robot.world.ball.known
+
+
 def test_sighting_without_any_error_does_not_break_the_filter() -> None:
     robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
     for _ in range(10):
