@@ -12,6 +12,7 @@ from procs.model.units import US_PER_S
 from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.contact import RobotRow, Robots
+from procs.world_model.empty_mouth import EmptyMouth
 from procs.world_model.kicks import Kick, Kicks
 from procs.world_model.own_sights import OwnSights
 from procs.world_model.own_view import OwnView
@@ -64,6 +65,7 @@ class BallFollower:
         self._robot = robot
         self._own_sights = OwnSights(fastest_m_s)
         self._placed = PlacedBall()
+        self._empty_mouth = EmptyMouth()
         self._held = False
         self.apply(config)
 
@@ -96,6 +98,8 @@ class BallFollower:
         tracker.advance(passed_s, timeout_s, contact=wall, robots=near, walls=self._walls, next_s=next_s)
         if news.game:
             self._take_placed_ball(news.game)
+        if news.kicker:
+            self._empty_mouth.note(news.kicker)
         if news.holds and view.localized and not kicked:
             self._take_held_ball(view)
         self._held = news.holds
@@ -122,13 +126,15 @@ class BallFollower:
         """Takes a percept of the ball, and keeps its likeliest place for the next message to the team."""
         config = self._config
         age_s = config.age_s(percept.capture_us, now_us)
-        seen = view.ball(percept, age_s)
+        exposed_us = now_us - round(age_s * US_PER_S)
+        is_none = self._empty_mouth.refutes(percept, exposed_us, self._mouth_m)
+        seen = Seen.NOTHING if is_none else view.ball(percept, age_s)
         self.untold = seen if self._is_possible(seen, percept.z_m, age_s) else Seen.NOTHING
         sightings = []
         for candidate, height_m in ((seen, percept.z_m), *view.other_balls(percept, age_s)):
             widened = candidate.widened(config.sight_correlation, config.pose_correlation)
             sightings += self._sightings(self._robot, widened, height_m, view.pose[:2], age_s)
-        self._own_sights.note(now_us - round(age_s * US_PER_S), sightings)
+        self._own_sights.note(exposed_us, sightings)
         self._see(sightings)
 
     def _take_mates_ball(self, news: BallNews) -> None:
