@@ -16,11 +16,15 @@ What happens to a sighting that does not fit the track:
   the track meanwhile.
 - A single sighting suffices for a new track if no robot has seen the ball for a while, the ball can have come there,
   and the sighting is in the air or something may have touched the ball.
+
+A single sighting that turns the ball, or begins a new track in the place of another, may show another thing. The track
+before is therefore kept until a second sighting fits one of them: if it fits the track before only, the ball goes on as
+before, and the single sighting is a doubt.
 """
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from dataclasses import field as of_class
 
 import numpy as np
@@ -43,6 +47,7 @@ _OWN_BONUS = 4.0  # factor by which a sighting of the own camera outranks a mate
 _AT_ONCE_US = 20_000  # within this time, all robots see the ball at one place
 _MOVES_M_S = 1.0  # a slower ball that seems to jump was more likely seen by a robot that errs about its own place
 _MET = 0.003  # least probability that something has touched a ball that jumps
+_TURNS_M_S = 2.0  # a single sighting that changes the velocity by more turns the track
 _FLIES_M = 0.1  # a ball that seems to fly lower than this may lie on the ground, partly hidden
 _SAME_RAY_M = 0.3  # largest distance from the ray of a sighting at which a ball may be the thing seen
 _BELOW_M = 0.3  # largest deviation of a flying ball's place at which something on the ground is right below it
@@ -141,6 +146,8 @@ class BallTrack:
     """Carpet that the last filter learnt, if the ball is not known."""
     flight: Flight | None = None
     """None while the ball is on the ground."""
+    before: "BallTrack | None" = None
+    """The track before a single sighting turned it or began this one, until a second sighting fits."""
 
     def is_forgotten(self, time_us: int, step: Step) -> bool:
         """Returns whether the newest sighting is too old at a later time."""
@@ -156,6 +163,8 @@ class BallTrack:
         last, ball, confirmed = (self.seen_us, self.seen_m), self.filter.copy(), self.confirmed.copy()
         made = BallTrack(time_us, self.ball, self.fastest_m_s, ball, *last, confirmed, doubts, flight=self.flight)
         made._advance((time_us - self.time_us) / US_PER_S, step)
+        if self.before is not None and time_us - self.seen_us <= step.doubt_us:
+            made.before = self.before.moved(time_us, step)
         return made
 
     def _advance(self, duration_s: float, step: Step) -> None:
@@ -190,12 +199,38 @@ class BallTrack:
         """
         if self.filter is None:
             self._begin(sighting)
-        elif (fitting := next(filter(self._fuse, (sighting, *others)), None)) is not None:
+        elif (fitting := self._fitting(sighting, *others) or self._fitting_before(sighting, *others)) is not None:
             self._confirm(fitting)
         elif self._strayed(sighting):
-            self._begin(sighting)
+            self._jump(sighting)
         elif not self._overruled(sighting) and not self._begin_if_struck(sighting):
             self._doubt(sighting)
+
+    def _fitting(self, *sightings: Sighting) -> Sighting | None:
+        """Corrects the track of a known ball with the first sighting that fits; returns that, if there is one."""
+        assert self.filter is not None
+        former, flight = self.filter.copy(), self.flight
+        fitting = next(filter(self._fuse, sightings), None)
+        if fitting is not None:
+            turned = math.dist(former.likeliest[2:4], self.filter.likeliest[2:4]) > _TURNS_M_S
+            self.before = replace(self._doubting(fitting), filter=former, flight=flight) if turned else None
+        return fitting
+
+    def _fitting_before(self, *sightings: Sighting) -> Sighting | None:
+        """Goes on as before a single sighting turned the track, if another one fits that; returns the other."""
+        before = self.before
+        if before is None or before.filter is None:
+            return None
+        fitting = next(filter(before._fuse, sightings), None)
+        if fitting is not None:
+            self.filter, self.flight, self.before = before.filter, before.flight, None
+            self.confirmed, self.doubts = before.confirmed, before.doubts
+        return fitting
+
+    def _doubting(self, sighting: Sighting) -> "BallTrack":
+        """Returns the track as it is, with a doubt more; it does not follow what happens to this one."""
+        doubts, confirmed = (*self.doubts, (self.time_us, sighting)), self.confirmed.copy()
+        return replace(self, confirmed=confirmed, doubts=doubts, before=None)
 
     def _fuse(self, sighting: Sighting) -> bool:
         """Corrects the track of a known ball with a sighting; returns False, and changes nothing, if it does not fit.
@@ -222,7 +257,7 @@ class BallTrack:
         if self.filter is None or np.hypot(*(self.filter.state[:2] - state[:2])) > _ELSEWHERE_M:
             self.filter = self._new(state[:2], np.eye(2) * _BEGINS_M**2 + covariance[:2, :2])
         self.filter.hold(state, covariance + np.diag(np.square((IN_MOUTH_M, IN_MOUTH_M, _HELD_M_S, _HELD_M_S))))
-        self.flight = None
+        self.flight = self.before = None
         self.confirmed = {robot: (self.time_us, 0.0)}
         self._note_place()
         self.doubts = ()
@@ -236,7 +271,7 @@ class BallTrack:
                 return
         self.filter = self._new(spot_m, np.eye(2) * _SPOT_M**2)
         self.filter.rest()
-        self.flight = None
+        self.flight = self.before = None
         self.confirmed, self.doubts = {}, ()
         self._note_place()
 
@@ -251,8 +286,7 @@ class BallTrack:
         elif self.filter is not None:
             self.filter.kick(velocity_m_s, time_sd_s=time_sd_s)
         self.flight = Flight.of_kick(lift_m_s)
-        self.confirmed = {}
-        self.doubts = ()
+        self.confirmed, self.doubts, self.before = {}, (), None
 
     def _new(self, position_m: Floats, covariance_m2: Floats, velocity_m_s: Floats | None = None) -> BallFilter:
         """Returns a filter that begins with a sighting, on the carpet that is known."""
@@ -327,8 +361,14 @@ class BallTrack:
             return False
         if flight is not None and self.filter.copy().see(sighting.position_m, sighting.of_flying_m2()):
             return False
-        self._begin(sighting, velocity_m_s, flight and flight.seen(sighting.height_m))
+        self._jump(sighting, velocity_m_s, flight and flight.seen(sighting.height_m))
         return True
+
+    def _jump(self, sighting: Sighting, velocity_m_s: Floats | None = None, flight: Flight | None = None) -> None:
+        """Begins a new track in the place of a known ball with a single sighting; see `_begin`."""
+        before = self._doubting(sighting)
+        self._begin(sighting, velocity_m_s, flight)
+        self.before = before
 
     def _velocity_to(self, sighting: Sighting, exposed_us: int) -> Floats | None:
         """Returns the mean velocity (2) from where the ball was seen last, if it can have come from there."""
@@ -344,7 +384,7 @@ class BallTrack:
         rises = velocity_m_s is not None and (self.flight is None or self.flight.lift_m_s > 0.0)
         self.filter = self._new(sighting.position_m, sighting.covariance_m2, velocity_m_s)
         self.flight = flight or Flight.of_sight(sighting.height_m, rises)
-        self.confirmed, self.doubts = {}, ()
+        self.confirmed, self.doubts, self.before = {}, (), None
         self._confirm(sighting)
 
     def _confirm(self, sighting: Sighting) -> None:
