@@ -135,9 +135,8 @@ class WorldModel(Component):
             mate = mate_of(message, now_s) if self._is_of_team(message.robot) else None
             if mate is None or mate.name == self._robot:
                 continue
-            is_wrong = mate.localized and not self._is_inside_walls(
-                *mate.position_m.tolist()
-            )  # its sightings are wrong, too
+            x_m, y_m = mate.position_m.tolist()
+            is_wrong = mate.localized and not self._is_inside_walls(x_m, y_m)  # its sightings are wrong, too
             mate.localized = mate.localized and not is_wrong
             if (mate := self._team.note(mate)) and not is_wrong:
                 told.append((message, mate))
