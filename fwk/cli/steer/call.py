@@ -11,7 +11,7 @@ from fwk.cli.look.bb import field_lines
 from fwk.cli.run_options import Json, RunChoice, ask, asking
 from fwk.cli.steer.send import Fields, made
 from fwk.control import runs
-from fwk.control.client import Client, RefusedError
+from fwk.control.client import Client, ControlError, RefusedError
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
 from fwk.lcm.type_registry import use_types_of
@@ -44,6 +44,8 @@ def call(
 ) -> None:
     """Sends a command or a request to the component that carries it out, and shows its answers.
 
+    A component that is stopped or has failed is sent nothing; one that restarts is waited for.
+
     Exit codes: 0 done, or accepted with --accepted; 1 not done, or no run answers; 2 it could not be sent.
     """
     wanted = ("done", "accepted") if accepted else ("done",)
@@ -66,6 +68,7 @@ def _called(
     """Returns the last answer; after the time-out, the last one until then, with `timed_out`."""
     with runs.gateway(chosen) as gateway:
         data = _encoded(gateway, name, fields, chosen)
+        _check_owner(name, chosen)
         last: dict[str, Any] = {}
         for answer in gateway.follow("call", timeout_s, True, name=name, data=data.hex(), expires_s=expires_s):
             last = {"reply": {}, "reason": "", **answer, "timed_out": False}
@@ -74,16 +77,36 @@ def _called(
     return {**last, "timed_out": True, "owner": _owner(name, chosen)}
 
 
+def _check_owner(name: str, chosen: str | None) -> None:
+    """Checks that the component that carries the commands out has a process, or gets one without being told.
+
+    Raises:
+        ControlError: the component was not started, was stopped, or has failed for good.
+    """
+    component = _owner_status(name, chosen)["components"][0]
+    if component["state"] in _ENDED and not component["pid"]:
+        remedy = "" if "'fwk " in component["reason"] else f"; 'fwk start {component['name']}' starts it"
+        raise ControlError(f"{name}: not sent, because {_state(component)}{remedy}")
+
+
 def _owner(name: str, chosen: str | None) -> str:
     """Returns the component that carries the commands out, with its state, and whether the run is paused."""
+    status = _owner_status(name, chosen)
+    paused = f", but the run is paused after tick {status['tick']}; 'fwk resume' goes on" if status["paused"] else ""
+    return _state(status["components"][0]) + paused
+
+
+def _owner_status(name: str, chosen: str | None) -> dict[str, Any]:
+    """Returns the status of the run with that of the component that carries the commands out."""
     with runs.gateway(chosen) as gateway:
         rows = gateway.ask("channels")["channels"]
     owner = next(row["writer"] for row in rows if row["channel"] == service_channel(name, ANSWERS))
-    status = ask(chosen, "status", names=[owner])
-    (component,) = status["components"]
-    state = f"{owner} is {component['state']}{': ' if component['reason'] else ''}{component['reason']}"
-    paused = f", but the run is paused after tick {status['tick']}; 'fwk resume' goes on" if status["paused"] else ""
-    return state + paused
+    return ask(chosen, "status", names=[owner])
+
+
+def _state(component: dict[str, Any]) -> str:
+    reason = f": {component['reason']}" if component["reason"] else ""
+    return f"{component['name']} is {component['state']}{reason}"
 
 
 def _encoded(gateway: Client, name: str, fields: list[str], chosen: str | None) -> bytes:
@@ -107,4 +130,6 @@ def _sentence(last: dict[str, Any], timeout_s: float) -> str:
     return f"{last['name']}: {last['state']}, tick {last['tick']}{': ' if last['reason'] else ''}{last['reason']}"
 
 
+_ENDED = ("stopped", "failed")
+"""States that only a person ends, once the component has no process."""
 _LACKING = {"sent": "answer", "accepted": "last answer"}

@@ -97,8 +97,8 @@ def last_state(client: Client, name: str, expires_s: float = 100.0, **fields: ob
 def test_a_command_to_a_stopped_component_never_begins(launch: Launch, folder: Path, ports: PortBlock) -> None:
     run = started(launch, ports)
     run.fwk("stop", "r/lifter")
-    said = run.fwk("call", "r/lift", "height_m=1", "--timeout", "0.5", "--expires", "1000", code=1)
-    assert "error: r/lift: sent, and no answer within 0.5 s; r/lifter is stopped" in said
+    with Client(gateway_address(ports.bus), TIMEOUT_S) as client:
+        assert client.ask("call", name="r/lift", data=encoded(height_m=1.0), expires_s=1000.0)["state"] == "sent"
     run.fwk("start", "r/lifter")
     assert "r/lift: done" in run.fwk("call", "r/lift", "height_m=2")
     log = run.end()
@@ -107,6 +107,28 @@ def test_a_command_to_a_stopped_component_never_begins(launch: Launch, folder: P
     first = recording.decoded("r/lift@answers")[0].answer
     assert (first.sequence, first.reason) == (1, "r/lifter was started after it had been sent")
     assert "byte for byte" in run.fwk("replay", str(log), "--verify")
+
+
+def test_fwk_call_refuses_a_component_that_is_stopped(launch: Launch, folder: Path, ports: PortBlock) -> None:
+    run = started(launch, ports)
+    run.fwk("stop", "r/lifter")
+    said = run.fwk("call", "r/lift", "height_m=1", "--timeout", "1000", code=1)
+    assert "error: r/lift: not sent, because r/lifter is stopped" in said
+    assert "; 'fwk start r/lifter' starts it" in said
+    run.fwk("start", "r/lifter")
+    assert "r/lift: done" in run.fwk("call", "r/lift", "height_m=2")
+    assert begun(Recording(run.end())) == [("outside", 1, 2.0)]
+
+
+def test_fwk_call_waits_for_a_component_that_restarts(launch: Launch, folder: Path, ports: PortBlock) -> None:
+    file = folder / "launch/lift.yaml"
+    file.write_text(file.read_text().replace('Lifter" }', 'Lifter", restart: { backoff_s: 2.0 } }'))
+    run = started(launch, ports)
+    os.kill(run.launched.host("r/lifter"), signal.SIGKILL)
+    run.launched.until_true(lambda: run.json("status", "r/lifter")["components"][0]["state"] == "waiting", "its death")
+    said = run.fwk("call", "r/lift", "height_m=1", code=1)
+    assert "r/lifter was started after it had been sent" in said
+    run.end()
 
 
 def test_an_unanswered_call_tells_that_the_run_is_paused(launch: Launch, folder: Path, ports: PortBlock) -> None:

@@ -35,7 +35,8 @@ time_s: 0.6
 def test_scenario_of_a_file_is_played_and_replayed(launch: Launch, ports: PortBlock, tmp_path: Path) -> None:
     write_files(tmp_path, FILES)
     run = Steered(launch("match.yaml", "--speed", "2"), ports)
-    unloaded = run.fwk("call", "world/scenario", "name=match-ends", "--timeout", "0.1", code=1)
+    unloaded = run.fwk("call", "world/scenario", "name=match-ends", "--timeout", "1000", code=1)
+    assert "world/scenario: not sent, because world/crew is stopped: " in unloaded
     assert "world/crew is stopped: does not start with the run; 'fwk load' starts it" in unloaded
     run.fwk("load", "world/crew")
     assert "mine.yml: No such file or directory" in run.fwk("call", "world/scenario", "text=@mine.yml", code=2)
