@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Literal
 
+import numpy as np
 from pydantic import ValidationInfo, field_validator
 
 from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Writes, channel
@@ -74,6 +75,7 @@ class Agent(Component):
     config: AgentConfig
     clock: Clock
     log: Logger
+    rng: np.random.Generator
     world_model: Reads[world_model_t]
     game_state: Reads[game_state_t] = channel("world/game_state")
     kicker_state: Reads[kicker_state_t]
@@ -83,7 +85,7 @@ class Agent(Component):
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
         self._frame = frame_of(self.game_state.value, self._team)
-        self._tactics = Tactics(self.config.field)
+        self._tactics = Tactics(self.config.field, self.rng)
         self._company = Company()
         self._stalls = Stalls()
         self._steady = SteadyRole()
@@ -94,7 +96,7 @@ class Agent(Component):
     def config_changed(self) -> None:
         self._bodies = Bodies.of(self.config.robot, self.config.ball)
         if self._tactics.field != self.config.field:
-            self._tactics = Tactics(self.config.field)
+            self._tactics = Tactics(self.config.field, self.rng)
 
     @property
     def _team(self) -> Team:
@@ -103,7 +105,7 @@ class Agent(Component):
     def loop(self) -> None:
         role, frame = self.role.value, frame_of(self.game_state.value, self._team)
         if frame != self._frame:
-            self._frame, self._tactics = frame, Tactics(self.config.field)
+            self._frame, self._tactics = frame, Tactics(self.config.field, self.rng)
         game = game_of(self.game_state.value, self._team, frame)
         if role.role == ABSENT and self._robot not in game.sent_off:
             role.role = roles.DEFENDER

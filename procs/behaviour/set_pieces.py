@@ -1,8 +1,8 @@
 """Book of the own set pieces: where the receiver waits, in at least two variants for each; attack frame.
 
-The taker chooses: variants take turns from one set piece to the next, and one whose way is blocked is passed over. It
-announces the receiver's place with the pass; until the receiver has heard of it, it waits at the place that is next in
-turn.
+The taker draws a variant, so that matches do not open alike, and passes over one whose way is blocked. It announces the
+receiver's place with the pass; until the receiver has heard of it, it waits at the place of the variant that the number
+of the set piece gives.
 """
 
 import math
@@ -50,12 +50,22 @@ def long_to_the_wing(game: Game, field: Field) -> Point:
     return _inside(Point(game.spot.x_m + 5.5, -_away(game) * 3.0 * (field.width_m / _WIDTH_M)), field)
 
 
-def back(_game: Game, _field: Field) -> Point:
+def back_left(_game: Game, _field: Field) -> Point:
     """Behind the centre mark, a little to the left."""
     return Point(-2.2, 1.0)
 
 
-def wide(_game: Game, field: Field) -> Point:
+def back_right(_game: Game, _field: Field) -> Point:
+    """Behind the centre mark, a little to the right."""
+    return Point(-2.2, -1.0)
+
+
+def wide_left(_game: Game, field: Field) -> Point:
+    """Beside the centre mark, on the left wing of the own half."""
+    return Point(-0.7, 4.5 * (field.width_m / _WIDTH_M))
+
+
+def wide_right(_game: Game, field: Field) -> Point:
     """Beside the centre mark, on the right wing of the own half."""
     return Point(-0.7, -4.5 * (field.width_m / _WIDTH_M))
 
@@ -73,7 +83,7 @@ def short(game: Game, field: Field) -> Point:
 BOOK: Mapping[State, Sequence[Variant]] = {
     state: tuple(Variant(place.__name__.replace("_", " "), place) for place in places)
     for state, places in {
-        State.KICK_OFF: (back, wide),
+        State.KICK_OFF: (back_left, wide_right, back_right, wide_left),
         State.FREE_KICK: (lay_off, square),
         State.THROW_IN: (lay_off, ahead_on_the_wing),
         State.GOAL_KICK: (lay_off, long_to_the_wing),
@@ -83,15 +93,18 @@ BOOK: Mapping[State, Sequence[Variant]] = {
 """Variants of each set piece but the penalty, which is shot."""
 
 
-def choose(game: Game, rivals: Sequence[Robot], field: Field, bodies: Bodies) -> tuple[str, Point] | None:
+def choose(
+    game: Game, rivals: Sequence[Robot], field: Field, bodies: Bodies, turn: int | None = None
+) -> tuple[str, Point] | None:
     """Returns the variant of the own set piece and the receiver's place; None for a set piece without a receiver.
 
-    It is the first in turn whose way is free; if all are blocked, the one with the most room.
+    It is the first whose way is free, beginning with that of the `turn`, or of the set piece's number; if all are
+    blocked, the one with the most room.
     """
     variants = BOOK.get(game.state)
     if not variants:
         return None
-    turn = game.number % len(variants)
+    turn = (game.number if turn is None else turn) % len(variants)
     found = [(each.name, receiver_place(each, game, field, bodies)) for each in (*variants[turn:], *variants[:turn])]
     return max(found, key=lambda each: min(aim.LANE_RAD, room_rad(game.spot, each[1], rivals, bodies)))
 

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from procs.behaviour import aim, ballistics, formation, set_pieces
 from procs.behaviour.ball_play import BallPlay, field_players
 from procs.behaviour.game import Game, Whose
@@ -41,13 +43,17 @@ _HOME_M = 1.0  # a goalkeeper this near to its penalty area goes straight home, 
 KEEPER_OUT_M = 2.3
 """The goalkeeper comes so far before its line."""
 _WITH_BALL = ("dribble", "aim")
+_TURNS = 12  # a multiple of the number of variants of each set piece
 
 
 class Tactics:
     """Decides for one robot, once a tick; keeps the last order."""
 
-    def __init__(self, field: Field) -> None:
+    def __init__(self, field: Field, rng: np.random.Generator | None = None) -> None:
+        """Draws the variants of set pieces; without a generator they take turns."""
         self.field = field
+        self._rng = rng
+        self._turn: int | None = None
         self._last = Order("stop")
         self.passing = Passing()
         """Agreement on a pass, for the messages to the team."""
@@ -193,8 +199,10 @@ class Tactics:
     def _plan(self, view: View, game: Game) -> tuple[str, Point] | None:
         """Returns the variant of the own set piece and the receiver's place, chosen while the game is stopped."""
         if game.number != self._planned_for or (game.stopped and self._blocked_s > _BLOCKED_S):
+            if self._rng and game.number != self._planned_for:
+                self._turn = int(self._rng.integers(_TURNS))
             self._planned_for, self._blocked_s = game.number, 0.0
-            self._planned = set_pieces.choose(game, view.opponents, self.field, view.bodies)
+            self._planned = set_pieces.choose(game, view.opponents, self.field, view.bodies, self._turn)
         return self._planned
 
     def _blocked(self, view: View, game: Game) -> bool:

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from procs.behaviour import set_pieces
@@ -49,7 +50,7 @@ def test_receiver_waits_within_the_rules_and_the_reach_of_a_pass(game: Game) -> 
     chosen = set_pieces.choose(game, (), FIELD, USUAL)
     assert chosen is not None
     name, place = chosen
-    assert name == BOOK[game.state][game.number % 2].name
+    assert name == BOOK[game.state][game.number % len(BOOK[game.state])].name
     assert FIELD.in_field(*place)
     assert not any(FIELD.in_penalty_area(*place, side) for side in (-1.0, 1.0))
     assert 2.0 <= math.dist(place, game.spot) <= 9.0
@@ -68,10 +69,11 @@ def test_receiver_at_the_own_corner_is_inside_the_field(spot: Point) -> None:
 @pytest.mark.parametrize("game", GAMES, ids=name_of)
 def test_variant_whose_way_is_blocked_is_passed_over(game: Game) -> None:
     places = [set_pieces.receiver_place(variant, game, FIELD) for variant in BOOK[game.state]]
-    blocker = robot("", *between(game.spot, places[game.number % 2], 0.6))
+    turn = game.number % len(places)
+    blocker = robot("", *between(game.spot, places[turn], 0.6))
     chosen = set_pieces.choose(game, (blocker,), FIELD, USUAL)
     assert chosen is not None
-    assert chosen[0] == BOOK[game.state][(game.number + 1) % 2].name
+    assert chosen[0] == BOOK[game.state][(turn + 1) % len(places)].name
 
 
 @pytest.mark.parametrize("state", BOOK)
@@ -104,6 +106,19 @@ def test_taker_tells_a_receiver_out_of_a_passes_reach(supporter: Point) -> None:
     said, chosen = tactics.passing.said, set_pieces.choose(game, (), FIELD, USUAL)
     assert chosen is not None
     assert (said.receiver, said.place) == ("cyan3", chosen[1])
+
+
+def test_taker_draws_the_variant_of_each_set_piece() -> None:
+    tactics, said = Tactics(FIELD, np.random.default_rng(1)), []
+    seen = view(robot("cyan2", 0.7, 0.0, math.pi), ball(0.0, 0.0), (robot("cyan3", -2.0, 1.5, role=SUPPORTER),))
+    for number in range(20):
+        game = Game(State.KICK_OFF, stopped=True, whose=Whose.OURS, number=number)
+        for _ in range(3):
+            tactics.decide(seen, game, job(ATTACKER), False, 0.05)
+            said.append(tactics.passing.said.place)
+    assert said[::3] == said[1::3] == said[2::3]
+    places = {set_pieces.receiver_place(variant, game, FIELD) for variant in BOOK[State.KICK_OFF]}
+    assert set(said) == places
 
 
 def test_plan_of_a_set_piece_is_kept_once_it_may_be_taken() -> None:
