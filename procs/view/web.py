@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from fwk.web import Newest, OpenPage, Page, RunAccess, Scene, View
-from lcmtypes.soccer import ground_truth_t, pose_t, true_robot_t, world_model_t
+from lcmtypes.soccer import ground_truth_t, navigator_state_t, pose_t, true_robot_t, world_model_t
 from procs.model.ball import BALL
 from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import ahead, plausible
@@ -18,14 +18,15 @@ from procs.view.measures import MEASURES, field_in, recent
 from procs.view.scoreboard import GAME_STATE, TRUTH, headline
 
 COLOURS = {CYAN: "#00b0d6", MAGENTA: "#d628aa"}
-MIND = ("pose", "world_model", "drive_target", "role", "skill_status")
-"""Channels of a robot with its beliefs, its target, its role and its skill."""
+MIND = ("pose", "world_model", "drive_target", "navigator_state", "role", "skill_status")
+"""Channels of a robot with its beliefs, its target and the way to it, its role and its skill."""
 _UNKNOWN = "#787878"
 _GRASS = "#30803c"
 _SURROUND = "#245c30"
 _WHITE = "#f0f4f0"
 _ARC_STEPS = 24
 _NOSE_M = 0.3  # length of the line that shows a robot's heading
+_BLOCKED = "(way blocked)"
 _RING_M = 0.03  # distance between the radius of a robot and that of the ring where it believes it is
 
 
@@ -174,8 +175,9 @@ def _draw_mind(scene: Scene, newest: Newest, truth: ground_truth_t, robot: true_
     if target is not None and not target.stop:
         scene.layer("targets", of=robot.name)
         scene.line([(robot.x_m, robot.y_m), (target.x_m, target.y_m)], colour, 0.02, dashed=True)
-    role, skill = told("role"), told("skill_status")
-    words = " ".join(filter(None, (role.role if role else "", skill.skill if skill else "")))
+    role, skill, navigator = told("role"), told("skill_status"), told("navigator_state")
+    blocked = navigator is not None and navigator.error == navigator_state_t.OBSTRUCTED
+    words = " ".join(filter(None, (role.role if role else "", skill.skill if skill else "", _BLOCKED * blocked)))
     if words:
         scene.layer("roles", of=robot.name)
         scene.text(robot.x_m, robot.y_m - 0.45, words, _WHITE, 0.2)

@@ -13,6 +13,7 @@ from lcmtypes.soccer import (
     drive_target_t,
     game_state_t,
     ground_truth_t,
+    navigator_state_t,
     pose_t,
     role_t,
     skill_status_t,
@@ -99,6 +100,12 @@ def test_infinite_headings_and_times_are_never_fatal(wild: float) -> None:
     made = drawn(messages)
     assert [shape["drag"] for shape in made["shapes"] if "drag" in shape] == ["ball"]
     assert "--:--" in made["headline"]
+
+
+@pytest.mark.parametrize(("error", "words"), [(0, "attacker get_ball"), (2, "attacker get_ball (way blocked)")])
+def test_blocked_way_is_told_beside_the_role(error: int, words: str) -> None:
+    messages = match() | {"cyan1/navigator_state": navigator_state_t(error=error)}
+    assert [shape["s"] for shape in drawn(messages)["shapes"] if shape["l"] == "roles"] == [words]
 
 
 def test_beliefs_targets_and_roles_have_layers_of_their_own() -> None:
