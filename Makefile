@@ -69,7 +69,7 @@ docs: types $(DOCS_READY)  ## Writes docs/commands.md, the index of commands, an
 
 pictures: types  ## Plays a match and draws docs/match.png, docs/display.svg and docs/camera-sight.jpg
 	$(BIN)/fwk-launch soccer.yaml --hosting robot --seed 7 --speed max --time 30 --plain --record build/match.log
-	$(BIN)/python -m tools.docs.pictures build/match.log --tick 560
+	$(BIN)/python -m tools.docs.pictures build/match.log --tick 470
 	$(BIN)/python -m procs.view.sight_picture docs/camera-sight.jpg
 
 rerun-picture: types  ## Plays a match and takes docs/rerun.png of 'fwk view --web' in a headless Chromium
