@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from lcmtypes.robot import kicker_state_t, motor_command_t
+from lcmtypes.robot import kicker_state_t, wheel_command_t, wheel_state_t
 from lcmtypes.soccer import (
     ball_percept_t,
     field_t,
@@ -33,8 +33,9 @@ BELIEFS: dict[str, Any] = {
     "team_message": team_message_t,
     "team_inbox": team_inbox_t,
     "ball_percept": ball_percept_t,
-    "motor_command": motor_command_t,
     "role": role_t,
+    "wheel_command": wheel_command_t,
+    "wheel_state": wheel_state_t,
     "skill_status": skill_status_t,
     "kicker_state": kicker_state_t,
     "pose": pose_t,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fwk.testing import system_of
-from lcmtypes.robot import motor_command_t
+from lcmtypes.robot import wheel_command_t, wheel_state_t
 from lcmtypes.soccer import (
     ball_percept_t,
     field_t,
@@ -226,23 +226,62 @@ def test_baselines_are_measured_beside_the_beliefs() -> None:
     assert not len(found["pose, position"])
 
 
-def test_radio_and_reactions_are_measured_by_their_times() -> None:
+def test_radio_is_measured_by_its_times() -> None:
     made = piece([robot("cyan1", 0.0, 1.0)], ticks=20)
-    told, inbox, percept = team_message_t(), team_inbox_t(), ball_percept_t()
+    told, inbox = team_message_t(), team_inbox_t()
     told.header.time_us, inbox.header.time_us, inbox.messages = 5_000_000, 5_050_000, [told]
-    percept.header.time_us, percept.capture_us = 5_100_000, 5_065_000
     made.by_robot = {
         "team_message": {"cyan1": {FIRST: told}},
         "team_inbox": {"cyan2": {FIRST + 1: inbox}},
-        "ball_percept": {"cyan1": {FIRST + 2: percept, FIRST + 4: percept}},
-        "motor_command": {"cyan1": {FIRST + 2: motor_command_t()}},
     }
     made.told_bytes = {"cyan1": 1000, "cyan2": 250}
     rows = {row.name: row.value for row in rows_of([samples_of(made)])}
     assert rows["radio, age of a message, 95 %"] == pytest.approx(0.1)  # read in the tick after the inbox
     assert rows["radio, volume of a team"] == pytest.approx(0.01)
     assert rows["radio, messages of a robot"] == pytest.approx(1.0)
-    assert rows["picture to motor command, 95 %"] == pytest.approx(0.035)
+
+
+def driven(delay_s: float, period_s: float = 0.05) -> dict[str, Any]:
+    """Returns messages of wheels that turn as commanded after a delay; of 60 exposures two in three have a command."""
+
+    def speeds_m_s(time_s: float) -> list[float]:
+        return [math.sin(3.0 * time_s), math.cos(2.0 * time_s), 0.5]
+
+    ticks = range(FIRST, FIRST + 60)
+    percept = ball_percept_t(capture_us=5_065_000)
+    percept.header.time_us = 5_100_000
+    turning = {tick: speeds_m_s((tick - 0.5) * period_s - delay_s) for tick in ticks}
+    return {
+        "ball_percept": {"cyan1": dict.fromkeys(ticks, percept)},
+        "wheel_command": {
+            "cyan1": {tick: wheel_command_t(wheel_m_s=speeds_m_s(tick * period_s)) for tick in ticks if tick % 3}
+        },
+        "wheel_state": {"cyan1": {tick: wheel_state_t(measured_m_s=speeds) for tick, speeds in turning.items()}},
+    }
+
+
+@pytest.mark.parametrize("delay_s", [0.0, 0.06, 0.13])
+def test_loop_reaches_from_exposures_to_turning_wheels(delay_s: float) -> None:
+    made = piece([robot("cyan1", 0.0, 1.0)], ticks=60)
+    made.by_robot = driven(delay_s)
+    found = samples_of(made)["picture to motion of the wheels, 95 %"]
+    assert found.tolist() == pytest.approx([0.035 + delay_s] * 40, abs=0.003)
+
+
+def test_robot_that_stands_has_no_loop_to_measure() -> None:
+    made = piece([robot("cyan1", 0.0, 1.0)], ticks=60)
+    made.by_robot = driven(0.06)
+    made.by_robot["wheel_command"]["cyan1"] = dict.fromkeys(made.truth, wheel_command_t(wheel_m_s=[0.0] * 3))
+    assert not len(samples_of(made)["picture to motion of the wheels, 95 %"])
+
+
+@pytest.mark.parametrize("speeds_m_s", [[], [math.nan, 0.0, 0.0]])
+def test_wheels_without_speeds_are_left_out(speeds_m_s: list[float]) -> None:
+    made = piece([robot("cyan1", 0.0, 1.0)], ticks=60)
+    made.by_robot = driven(0.06)
+    made.by_robot["wheel_state"]["cyan1"][FIRST + 30] = wheel_state_t(measured_m_s=speeds_m_s)
+    found = samples_of(made)["picture to motion of the wheels, 95 %"]
+    assert found.max() == pytest.approx(0.095, abs=0.003)
 
 
 def test_teams_and_field_are_those_of_the_match() -> None:
