@@ -22,6 +22,8 @@ class ExpectedErrors(BaseModel):
     """Another robot's middle in the picture of a standing one, along and across the ray; with the shaking."""
     robot_shake_s_m: NonNegativeFloat = 0.35
     """Growth of `robot_px` for each m/s of the robot, as a share."""
+    stereo_px: PositiveFloat = 0.2
+    """A disparity of the stereo pair, in pixels of the frames that are searched. Both frames shake alike."""
     frame_m: NonNegativeFloat = 0.006
     """A position by the lines of one frame: the part of its error that all points of the frame share."""
     frame_rad: NonNegativeFloat = 0.002
@@ -55,6 +57,7 @@ EXPECTED: dict[Realism, ExpectedErrors] = {
         ball_shake_s_m=0.0,
         robot_px=(0.3, 0.75),
         robot_shake_s_m=0.0,
+        stereo_px=0.15,
         frame_s=0.0,
         frame_rad_s_m=0.0,
         wheel_scale_sd=0.0,
@@ -63,6 +66,7 @@ EXPECTED: dict[Realism, ExpectedErrors] = {
     "friendly": ExpectedErrors(
         ball_px=0.15,
         robot_px=(0.3, 0.75),
+        stereo_px=0.15,
         frame_s=0.01,
         frame_rad_s_m=0.0005,
         wheel_scale_sd=0.01,
@@ -73,6 +77,7 @@ EXPECTED: dict[Realism, ExpectedErrors] = {
         ball_px=1.9,
         ball_shake_s_m=0.45,
         robot_px=(1.7, 3.3),
+        stereo_px=0.3,
         frame_m=0.05,
         frame_rad=0.01,
         frame_s=0.04,

@@ -3,8 +3,12 @@
 Values without a source are estimates.
 """
 
+import math
+
+import numpy as np
 from pydantic import BaseModel, ConfigDict
 
+from lcmtypes.soccer import true_robot_t
 from procs.model.realism import Realism
 
 
@@ -26,6 +30,12 @@ class MirrorErrors(BaseModel):
     """Interruptions in a minute, in which frames are lost in a row."""
     gap_s: float = 0.0
     """Mean duration of an interruption."""
+
+    def drawn_shake_px(self, own: true_robot_t, rng: np.random.Generator) -> tuple[float, float]:
+        """Draws how far a frame of the robot is shaken, along two axes."""
+        deviation_px = self.shake_px + self.shake_px_per_m_s * math.hypot(own.vx_m_s, own.vy_m_s)
+        first_px, second_px = (deviation_px * rng.standard_normal(2)).tolist()
+        return first_px, second_px
 
 
 MIRRORS: dict[Realism, MirrorErrors] = {

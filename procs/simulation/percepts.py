@@ -146,14 +146,13 @@ class Percepts(Component):
         if seen is None or self._gaps.blind(self.clock.now_us, self._errors.gaps_1_min, self._errors.gap_s):
             return
         own = seen.own
-        deviation_px = self._errors.shake_px + self._errors.shake_px_per_m_s * math.hypot(own.vx_m_s, own.vy_m_s)
-        forward, left = (deviation_px * self.rng.standard_normal(2)).tolist()
+        shake_px = self._errors.drawn_shake_px(own, self.rng)
         others = [(robot.x_m, robot.y_m) for robot in seen.others]
         robots_m = _seen_from(own, np.array(others).reshape(-1, 2))
-        self._see_ball(own, seen.truth, robots_m, (forward, left), passed_s)
+        self._see_ball(own, seen.truth, robots_m, shake_px, passed_s)
         teams = [TEAM_NUMBERS.get(team_in(robot), obstacle_t.TEAM_UNKNOWN) for robot in seen.others]
-        self._see_robots(robots_m, teams, (forward, left), passed_s)
-        self._see_lines(own, robots_m, (forward, left))
+        self._see_robots(robots_m, teams, shake_px, passed_s)
+        self._see_lines(own, robots_m, shake_px)
         for port in (self.ball_percept, self.obstacle_percepts, self.line_points):
             port.value.capture_us = seen.capture_us
             port.write()

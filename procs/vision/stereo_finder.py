@@ -52,7 +52,7 @@ class StereoFinder:
     farthest_m: float = 4.5
     """Bodies further ahead are not reported."""
     radius_m: float = ROBOT.radius_m
-    deviation_px: float = 0.35
+    deviation_px: float = 0.2
     """Standard deviation of a disparity."""
     block_px: int = 11
     """Width and height of the blocks that are compared; odd."""

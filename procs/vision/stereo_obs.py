@@ -7,6 +7,8 @@ from pydantic import ValidationInfo, field_validator
 from fwk import Component, Config, Image, Writes
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
 from procs.model.ball import BALL, BallModel
+from procs.model.expected_errors import EXPECTED
+from procs.model.realism import Realism
 from procs.model.robot import ROBOT, RobotModel
 from procs.vision.exposure import captured_us
 from procs.vision.stereo_finder import LONGEST_PX, StereoFinder
@@ -29,8 +31,10 @@ class StereoObsConfig(Config):
     """Size of the ball, which is no obstacle."""
     farthest_m: float = Setting(default=4.5, gt=0.5, le=20.0)
     """Obstacles further ahead are not reported."""
-    deviation_px: float = Setting(default=0.35, gt=0.0, le=50.0)
-    """Standard deviation of a disparity, in pixels of the frames that are searched."""
+    realism: Realism = "realistic"
+    """Errors of the cameras that covariances allow for: none, friendly, realistic or harsh."""
+    deviation_px: float | None = Setting(default=None, gt=0.0, le=50.0)
+    """Standard deviation of a disparity, in pixels of the frames that are searched; null: by `realism`."""
     latency_s: float = Setting(default=0.0, ge=0.0, le=1.0)
     """Time from the exposure of a frame to its publication, for cameras that do not state the exposure."""
 
@@ -103,7 +107,7 @@ class StereoObs(Component):
             highest_m=highest_m,
             farthest_m=config.farthest_m,
             radius_m=config.robot.radius_m,
-            deviation_px=config.deviation_px,
+            deviation_px=config.deviation_px or EXPECTED[config.realism].stereo_px,
         )
 
 

@@ -14,39 +14,40 @@ _SEED = 1  # of the noise field
 class SensorNoise:
     """Adds noise drawn beforehand: fresh random numbers for every pixel would cost more than the whole picture.
 
-    All cameras of one size share a field of noise, so that it stays in the processor's cache.
+    All cameras with pictures of one shape share a field of noise, so that it stays in the processor's cache.
     """
 
     def __init__(
         self,
-        size_px: int,
+        shape: tuple[int, ...],
         levels: float,
         brightness: float,
         flicker: float,
         *,
         blur_px: float = 0.0,
         vignette: float = 0.0,
-        cast: tuple[float, float, float] = (1.0, 1.0, 1.0),
+        cast: tuple[float, ...] = (1.0,),
     ) -> None:
         """Draws the noise, and computes the flaws of the lens.
 
         Args:
-            size_px: width and height of the pictures.
+            shape: height and width of the pictures, and the number of their colours unless they are grey.
             levels: standard deviation of the noise, of 255.
             brightness: mean factor on all colours.
             flicker: standard deviation of the brightness, as a part of it.
             blur_px: standard deviation of the blur.
             vignette: part of the brightness that is missing at the picture's edge.
-            cast: factors on blue, green and red.
+            cast: factors on blue, green and red, or one on all.
         """
-        self._lighter, self._darker = _noise(size_px, levels)
+        self._lighter, self._darker = _noise(shape, levels)
         self._noisy = levels > 0
         self._brightness = brightness
         self._flicker = flicker
         self._blur_px = blur_px
-        from_centre = np.linspace(-1.0, 1.0, size_px)
-        square = np.minimum(from_centre[:, None] ** 2 + from_centre**2, 1.0)
+        down, right = (np.linspace(-1.0, 1.0, length_px) for length_px in shape[:2])
+        square = np.minimum(down[:, None] ** 2 + right**2, 1.0)
         factors = (1.0 - vignette * square)[..., None] * np.maximum(cast, 0.0)
+        factors = np.broadcast_to(factors, shape) if len(shape) == 3 else factors[..., 0]
         self._most = float(factors.max())
         self._shade = np.round(255 * factors / max(self._most, 1e-9)).astype(np.uint8)
         self._even = bool((factors == 1.0).all())
@@ -68,8 +69,9 @@ class SensorNoise:
 
 
 @lru_cache(maxsize=4)
-def _noise(size_px: int, levels: float) -> tuple[Picture, Picture]:
+def _noise(shape: tuple[int, ...], levels: float) -> tuple[Picture, Picture]:
     """Returns what the noise adds to, and what it takes from, each pixel of a field larger than a picture."""
-    drawn = np.random.default_rng(_SEED).standard_normal((size_px + _SPARE_PX, size_px + _SPARE_PX, 3))
+    height_px, width_px, *colours = shape
+    drawn = np.random.default_rng(_SEED).standard_normal((height_px + _SPARE_PX, width_px + _SPARE_PX, *colours))
     drawn = np.round(drawn * levels)
     return drawn.clip(0, 255).astype(np.uint8), (-drawn).clip(0, 255).astype(np.uint8)

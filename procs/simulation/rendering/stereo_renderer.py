@@ -1,5 +1,6 @@
 """Renders what a forward pair of cameras sees: the ground, and robots as upright cylinders with a pattern."""
 
+import math
 from collections.abc import Sequence
 
 import cv2
@@ -8,7 +9,7 @@ import numpy as np
 from procs.model.algebra import Floats
 from procs.model.field import Field
 from procs.model.frames import Indices
-from procs.simulation.rendering.carpet import lay_carpet
+from procs.simulation.rendering.carpet import NEW, Wear, lay_carpet
 from procs.simulation.rendering.renderer import Pose
 from procs.simulation.rendering.shapes import Bodies
 from procs.vision.stereo_rig import Grey, StereoRig
@@ -21,19 +22,54 @@ _PANEL_RAD, _PANEL_M = 0.15, 0.05  # size of the patches on the bodies of robots
 class StereoRenderer:
     """Looks along the ray of every pixel, column by column, and paints upright bodies from far to near."""
 
-    def __init__(self, rig: StereoRig, field: Field, bodies: Bodies) -> None:
-        self._rig, self._bodies = rig, bodies
-        carpet = lay_carpet(field)
+    def __init__(
+        self,
+        rig: StereoRig,
+        field: Field,
+        bodies: Bodies,
+        wear: Wear = NEW,
+        tilt_rad: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
+        """Prepares the ground.
+
+        Args:
+            rig: calibration of the pair.
+            field: measures of the field.
+            bodies: measures of the robots.
+            wear: signs of use on the field.
+            tilt_rad: small uncalibrated tilt of the pair as a whole about the robot's x and y axis.
+        """
+        self._rig, self._bodies, self._tilt_rad = rig, bodies, tilt_rad
+        carpet = lay_carpet(field, wear=wear)
         self._origin_px, self._scale_m = carpet.origin_px, carpet.metres_per_px
         self._grey = cv2.cvtColor(carpet.pixels, cv2.COLOR_BGR2GRAY)
         rows = rig.rows
         self._ground_rows = rows > 0.02
         self._ground_m = rig.height_m / rows[self._ground_rows]  # distance ahead that each row sees
 
-    def render(self, own: Pose, robots_m: Sequence[tuple[float, float]]) -> Grey:
-        """Returns both frames side by side; `robots_m` are the middles of the other robots, world frame."""
-        halves = [self._frame(own, robots_m, aside_m) for aside_m in (0.5, -0.5)]
+    def render(
+        self, own: Pose, robots_m: Sequence[tuple[float, float]], shake_px: tuple[float, float] = (0.0, 0.0)
+    ) -> Grey:
+        """Returns both frames side by side, without noise.
+
+        `robots_m` are the middles of the other robots, world frame. `shake_px` moves both frames by so many columns and
+        rows.
+        """
+        halves = [self._moved(self._frame(own, robots_m, aside_m), shake_px) for aside_m in (0.5, -0.5)]
         return np.hstack(halves)
+
+    def _moved(self, frame: Grey, shake_px: tuple[float, float]) -> Grey:
+        """Returns the frame as a pair shows it that is tilted and shaken; at its edges the outermost pixels go on."""
+        roll_rad, pitch_rad = self._tilt_rad
+        right_px, down_px = shake_px[0], shake_px[1] - self._rig.focal_px * pitch_rad
+        if not (roll_rad or right_px or down_px):
+            return frame
+        height_px, width_px = frame.shape
+        middle_px = (width_px - 1) / 2, (height_px - 1) / 2
+        to_frame = np.asarray(cv2.getRotationMatrix2D(middle_px, math.degrees(roll_rad), 1.0), np.float64)
+        to_frame[:, 2] += right_px, down_px
+        moved = cv2.warpAffine(frame, to_frame, (width_px, height_px), borderMode=cv2.BORDER_REPLICATE)
+        return np.asarray(moved, np.uint8)
 
     def _frame(self, own: Pose, robots_m: Sequence[tuple[float, float]], side: float) -> Grey:
         rig = self._rig

@@ -50,7 +50,7 @@ def test_sky_has_the_colour_of_the_surroundings() -> None:
 
 def test_cameras_share_the_noise_but_not_its_place() -> None:
     grey = np.full((200, 200, 3), 128, np.uint8)
-    noises = [SensorNoise(200, 5.0, 1.0, 0.0) for _ in range(2)]
+    noises = [SensorNoise((200, 200, 3), 5.0, 1.0, 0.0) for _ in range(2)]
     first, second = (noise.apply(grey, np.random.default_rng(seed)) for seed, noise in enumerate(noises))
     assert np.shares_memory(noises[0]._lighter, noises[1]._lighter)
     assert abs(np.corrcoef(first.ravel(), second.ravel())[0, 1]) < 0.02

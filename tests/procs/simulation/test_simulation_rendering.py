@@ -138,7 +138,7 @@ def test_robots_at_the_camera_or_far_away_can_be_drawn() -> None:
 
 def test_noise_is_as_strong_as_set_and_differs_by_frame() -> None:
     grey = np.full((200, 200, 3), 128, np.uint8)
-    noise, rng = SensorNoise(200, 5.0, 1.0, 0.0), np.random.default_rng(2)
+    noise, rng = SensorNoise((200, 200, 3), 5.0, 1.0, 0.0), np.random.default_rng(2)
     first, second = noise.apply(grey, rng), noise.apply(grey, rng)
     assert first.std() == pytest.approx(5.0, rel=0.05)
     assert first.mean() == pytest.approx(128.0, abs=0.2)
@@ -147,7 +147,7 @@ def test_noise_is_as_strong_as_set_and_differs_by_frame() -> None:
 
 def test_brightness_scales_and_flicker_varies() -> None:
     grey, rng = np.full((100, 100, 3), 100, np.uint8), np.random.default_rng(2)
-    assert SensorNoise(100, 0.0, 1.5, 0.0).apply(grey, rng).mean() == 150.0
-    flickering = SensorNoise(100, 0.0, 1.0, 0.1)
+    assert SensorNoise((100, 100, 3), 0.0, 1.5, 0.0).apply(grey, rng).mean() == 150.0
+    flickering = SensorNoise((100, 100, 3), 0.0, 1.0, 0.1)
     means = [float(flickering.apply(grey, rng).mean()) for _ in range(200)]
     assert np.std(means) == pytest.approx(10.0, rel=0.2)

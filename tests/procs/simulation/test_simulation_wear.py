@@ -48,7 +48,7 @@ def test_specks_lie_on_the_floor_alone() -> None:
 
 
 def test_cast_changes_each_colour_by_its_factor() -> None:
-    noise = SensorNoise(100, 0.0, 1.0, 0.0, cast=(1.2, 1.0, 0.8))
+    noise = SensorNoise((100, 100, 3), 0.0, 1.0, 0.0, cast=(1.2, 1.0, 0.8))
     seen = noise.apply(np.full((100, 100, 3), 100, np.uint8), np.random.default_rng(1))
     assert seen[50, 50].tolist() == [120, 100, 80]
 
@@ -102,7 +102,7 @@ def test_tilt_and_cast_change_the_picture() -> None:
 
 
 def test_vignette_darkens_the_edge_beside_a_cast() -> None:
-    noise = SensorNoise(100, 0.0, 1.0, 0.0, vignette=0.2, cast=(1.1, 1.0, 0.9))
+    noise = SensorNoise((100, 100, 3), 0.0, 1.0, 0.0, vignette=0.2, cast=(1.1, 1.0, 0.9))
     seen = noise.apply(np.full((100, 100, 3), 100, np.uint8), np.random.default_rng(1))
     assert seen[50, 50].tolist() == [110, 100, 90]
     assert seen[0, 0].tolist() == [88, 80, 72]

@@ -38,7 +38,7 @@ def renderer() -> Renderer:
 
 @cache
 def noise() -> SensorNoise:
-    return SensorNoise(MIRROR.size_px, 5.0, 1.0, 0.0)
+    return SensorNoise((MIRROR.size_px, MIRROR.size_px, 3), 5.0, 1.0, 0.0)
 
 
 def picture(scene: Scene, rng: np.random.Generator, shake_px: float = 0.0) -> Picture:
@@ -231,7 +231,7 @@ def test_ball_on_the_ground_never_seems_to_fly() -> None:
 def test_brightness_does_not_matter(brightness: float) -> None:
     rng = np.random.default_rng(8)
     frame = renderer().render(Scene(Pose(-3.0, 2.0, 0.4), [(1.0, 2.0, CYAN)], (-1.0, 1.0, 0.11)))
-    ball = FINDER.find(SensorNoise(MIRROR.size_px, 5.0, brightness, 0.0).apply(frame, rng))
+    ball = FINDER.find(SensorNoise((MIRROR.size_px, MIRROR.size_px, 3), 5.0, brightness, 0.0).apply(frame, rng))
     assert ball is not None
     assert math.hypot(ball.x_m, ball.y_m) == pytest.approx(math.hypot(2.0, 1.0), abs=0.01)
 

@@ -17,6 +17,7 @@ from procs.model.ball import BallModel
 from procs.model.field import Field
 from procs.model.robot import RobotModel
 from procs.simulation.camera import Camera
+from procs.simulation.camera_errors import CameraErrors
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.shapes import Bodies
 from procs.vision.calibration import MirrorConfig
@@ -180,10 +181,10 @@ def test_settings_changed_between_iterations_are_used() -> None:
 
 def test_driving_shakes_the_picture_more_than_standing() -> None:
     def spread_px(vx_m_s: float) -> float:
-        bench = Bench(Camera, name="cyan1/camera", shake_px=0.2, shake_px_per_m_s=0.3)
+        errors, rng = CameraErrors(shake_px=0.2, shake_px_per_m_s=0.3), np.random.default_rng(1)
         own = robot("cyan1", -3.0, 2.0, 0.0)
         own.vx_m_s = vx_m_s
-        return float(np.std([bench.component._shake_px(own) for _ in range(500)]))
+        return float(np.std([errors.drawn_shake_px(own, rng) for _ in range(500)]))
 
     assert spread_px(0.0) == pytest.approx(0.2, rel=0.1)
     assert spread_px(2.0) == pytest.approx(0.8, rel=0.1)

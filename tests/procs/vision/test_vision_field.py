@@ -38,7 +38,7 @@ def renderer() -> Renderer:
 
 @cache
 def noise() -> SensorNoise:
-    return SensorNoise(MIRROR.size_px, 5.0, 1.0, 0.0)
+    return SensorNoise((MIRROR.size_px, MIRROR.size_px, 3), 5.0, 1.0, 0.0)
 
 
 def picture(scene: Scene, rng: np.random.Generator, shake_px: float = 0.0) -> Picture:
