@@ -40,7 +40,7 @@ PRESETS: dict[Realism, RadioSettings] = {
         loss=0.03, delay_s=0.01, delay_jitter_s=0.08, outages_1_min=0.5, outage_s=0.3, bandwidth_bit_s=2.2e6
     ),
     "harsh": RadioSettings(
-        loss=0.1, delay_s=0.02, delay_jitter_s=0.16, outages_1_min=2.0, outage_s=1.0, bandwidth_bit_s=1.1e6
+        loss=0.06, delay_s=0.02, delay_jitter_s=0.16, outages_1_min=1.0, outage_s=0.6, bandwidth_bit_s=1.1e6
     ),
 }
 

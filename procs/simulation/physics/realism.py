@@ -1,7 +1,7 @@
 """Deviation of the simulated bodies from the ideal: named presets from none to harsh.
 
-`realistic` has the values that teams report, `friendly` about a third of them, `harsh` up to twice as much, like the
-realism files of ER-Force's simulator. Values without a source are estimates.
+`realistic` has the values that teams report, `friendly` about a third of them, `harsh` one and a half times to twice as
+much, like the realism files of ER-Force's simulator. Values without a source are estimates.
 """
 
 from typing import Annotated

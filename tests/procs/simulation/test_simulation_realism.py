@@ -31,6 +31,12 @@ def test_presets_of_every_part_grow_harsher(part: str) -> None:
         assert milder != harsher
 
 
+def test_harsh_radio_is_twice_the_realistic_one() -> None:
+    harsh, realistic = (radio_links.PRESETS[name].model_dump() for name in ("harsh", "realistic"))
+    twice = {name: 2 * value for name, value in realistic.items()}
+    assert harsh == pytest.approx(twice | {"bandwidth_bit_s": realistic["bandwidth_bit_s"] / 2})
+
+
 @pytest.mark.parametrize(
     ("file", "component", "part"),
     [
