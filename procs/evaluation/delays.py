@@ -27,19 +27,21 @@ def delays(piece: Piece) -> Samples:
     return {
         "radio, volume of a team": np.array(volumes).reshape(-1, 2),
         "radio, messages of a robot": np.array([(messages, robots_s)] if messages else []).reshape(-1, 2),
-        "radio, age of a message, 95 %": np.array(_ages_s(piece)),
+        "radio, age of a mate's newest message, 95 %": np.array(_ages_s(piece)),
         "picture to motion of the wheels, 95 %": np.array(_loops_s(piece)),
     }
 
 
 def _ages_s(piece: Piece) -> list[float]:
-    """Returns the time from writing to reading of each message that a mate gets: inboxes are read a tick later."""
-    return [
-        (inbox.header.time_us - message.header.time_us) / US_PER_S + piece.period_s
-        for inboxes in piece.by_robot.get("team_inbox", {}).values()
-        for inbox in inboxes.values()
-        for message in inbox.messages
-    ]
+    """Returns how old the newest message of each mate is in each tick of a robot: inboxes are read a tick later."""
+    ages_s = []
+    for inboxes in piece.by_robot.get("team_inbox", {}).values():
+        newest_us: dict[str, int] = {}
+        for _, inbox in sorted(inboxes.items()):
+            for message in inbox.messages:
+                newest_us[message.robot] = max(message.header.time_us, newest_us.get(message.robot, 0))
+            ages_s += [(inbox.header.time_us - sent_us) / US_PER_S + piece.period_s for sent_us in newest_us.values()]
+    return ages_s
 
 
 def _loops_s(piece: Piece) -> list[float]:

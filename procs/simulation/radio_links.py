@@ -21,8 +21,8 @@ class RadioSettings(BaseModel):
     loss: float = 0.0
     """Probability that a message does not arrive, for each receiver on its own. ER-Force: 3 % of the commands."""
     delay_s: float = 0.0
-    """From sending to arrival. With the jitter and the tick that reads it, a message of `realistic` is 80 ms old in the
-    median and 120 ms in 95 %; in a match log of 2016 world states are 64 and 111 ms old."""
+    """From sending to arrival. An estimate of a wireless network; robots read in the next tick, whatever part of a tick
+    it takes."""
     delay_jitter_s: float = 0.0
     """A message takes up to that much longer; drawn evenly, so messages may overtake each other."""
     outages_1_min: float = 0.0
@@ -35,12 +35,12 @@ class RadioSettings(BaseModel):
 
 PRESETS: dict[Realism, RadioSettings] = {
     "none": RadioSettings(),
-    "friendly": RadioSettings(loss=0.01, delay_s=0.005, delay_jitter_s=0.04, bandwidth_bit_s=2.2e6),
+    "friendly": RadioSettings(loss=0.01, delay_s=0.002, delay_jitter_s=0.01, bandwidth_bit_s=2.2e6),
     "realistic": RadioSettings(
-        loss=0.03, delay_s=0.01, delay_jitter_s=0.08, outages_1_min=0.5, outage_s=0.3, bandwidth_bit_s=2.2e6
+        loss=0.03, delay_s=0.005, delay_jitter_s=0.02, outages_1_min=0.5, outage_s=0.3, bandwidth_bit_s=2.2e6
     ),
     "harsh": RadioSettings(
-        loss=0.06, delay_s=0.02, delay_jitter_s=0.16, outages_1_min=1.0, outage_s=0.6, bandwidth_bit_s=1.1e6
+        loss=0.06, delay_s=0.01, delay_jitter_s=0.04, outages_1_min=1.0, outage_s=0.6, bandwidth_bit_s=1.1e6
     ),
 }
 

@@ -236,7 +236,7 @@ def test_radio_is_measured_by_its_times() -> None:
     }
     made.told_bytes = {"cyan1": 1000, "cyan2": 250}
     rows = {row.name: row.value for row in rows_of([samples_of(made)])}
-    assert rows["radio, age of a message, 95 %"] == pytest.approx(0.1)  # read in the tick after the inbox
+    assert rows["radio, age of a mate's newest message, 95 %"] == pytest.approx(0.1)  # read in the tick after the inbox
     assert rows["radio, volume of a team"] == pytest.approx(0.01)
     assert rows["radio, messages of a robot"] == pytest.approx(1.0)
 

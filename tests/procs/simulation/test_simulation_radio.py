@@ -107,25 +107,23 @@ def test_delay_lies_between_the_least_and_the_jitter_on_top() -> None:
 
 
 @pytest.mark.parametrize(
-    ("realism", "median_s", "high_s"),
-    [("none", 0.04, 0.04), ("friendly", 0.04, 0.08), ("realistic", 0.08, 0.12), ("harsh", 0.12, 0.20)],
+    ("realism", "late"), [("none", 0.0), ("friendly", 0.0), ("realistic", 0.0), ("harsh", 10.0 / 40.0)]
 )
-def test_messages_are_as_old_as_in_a_match(realism: Realism, median_s: float, high_s: float) -> None:
-    """In a match log messages are 64 ms old in the median and 111 ms in 95 %; robots read in whole ticks of 40 ms."""
+def test_share_of_messages_that_a_robot_reads_a_tick_late(realism: Realism, late: float) -> None:
+    """Only the `harsh` radio takes longer than a tick of 40 ms: 10 to 50 ms."""
     bench = Bench(Radio, "team_cyan/radio", 1, 0.04, TEAM, realism=realism)
     for tick in range(1500):
         if tick % 2 == 0:
             for robot in TEAM:
                 say(bench, robot, period_us=40_000)
         bench.iterate()
-    ages_s = [
-        (inbox.header.time_us - message.header.time_us) / 1e6 + 0.04
+    ages_us = [
+        inbox.header.time_us - message.header.time_us
         for robot in TEAM
         for inbox in bench.port("inboxes", robot).sent
         for message in inbox.messages
     ]
-    found_s = np.quantile(ages_s, (0.5, 0.95), method="inverted_cdf")
-    assert found_s == pytest.approx((median_s, high_s))
+    assert np.mean(np.array(ages_us) > 0) == pytest.approx(late, abs=0.04)
 
 
 def test_same_seed_gives_the_same_radio_and_another_differs() -> None:
