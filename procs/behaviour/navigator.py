@@ -169,7 +169,7 @@ class Navigator(Component):
     def _outside(self, circle: Sequence[Disc], place: Point, velocity_m_s: Point) -> Point:
         """Returns the velocity, limited to what keeps the robot out of the circle."""
         for disc in circle:
-            velocity_m_s = obstacles.braked_at_disc(velocity_m_s, place, disc, self.config.limits.braking_m_s2)
+            velocity_m_s = obstacles.braked_at_disc(velocity_m_s, place, disc, self.config.limits)
         return velocity_m_s
 
     def _within_walls(self, velocity: Velocity, place: Point) -> Velocity:

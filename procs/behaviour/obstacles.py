@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 
 from lcmtypes.soccer import robot_estimate_t, world_model_t
 from procs.behaviour.bodies import Bodies
+from procs.behaviour.motion import Limits, speed_to_go_m_s
 from procs.behaviour.path import Disc
 from procs.behaviour.velocity_obstacles import DRIVES_M_S, Mover
 from procs.behaviour.view import Estimate, is_sane
@@ -87,12 +88,12 @@ def braked_at_walls(velocity_m_s: Point, place: Point, field: Field, bodies: Bod
     return Point(clamp(vx_m_s, -back_m_s, ahead_m_s), clamp(vy_m_s, -right_m_s, left_m_s))
 
 
-def braked_at_disc(velocity_m_s: Point, place: Point, disc: Disc, braking_m_s2: float) -> Point:
+def braked_at_disc(velocity_m_s: Point, place: Point, disc: Disc, limits: Limits) -> Point:
     """Returns the velocity, limited towards the middle of a disc to what a robot at the place can still brake."""
     room_m, way_rad = math.dist(place, disc.middle) - disc.radius_m, bearing_rad(place, disc.middle)
     cos, sin = math.cos(way_rad), math.sin(way_rad)
     towards_m_s = velocity_m_s.x_m * cos + velocity_m_s.y_m * sin
-    excess_m_s = max(0.0, towards_m_s - math.sqrt(2 * braking_m_s2 * max(0.0, room_m)))
+    excess_m_s = max(0.0, towards_m_s - speed_to_go_m_s(room_m, 0.0, math.inf, limits))
     return Point(velocity_m_s.x_m - excess_m_s * cos, velocity_m_s.y_m - excess_m_s * sin)
 
 
