@@ -17,6 +17,7 @@ from procs.model.robot import number_in
 from procs.model.teams import Ends, Team
 from procs.referee.positions import in_wrong_half, too_near
 from procs.referee.restarts import Restart
+from procs.referee.rules import Rules
 from procs.referee.sight import LEAVES
 
 _HEAVY_M_S, _LIGHT_M_S = 3.0, 1.0
@@ -46,12 +47,13 @@ def conducted(piece: Piece) -> Samples:
 def _restarts(piece: Piece) -> tuple[list[bool], list[bool]]:
     """Returns whether distances, and halves of the field, were violated at each set piece, until the ball moved."""
     distances, halves = [], []
+    rules = Rules(field=piece.measures)
     for released in _released(piece):
         near, crossed = [], []
         for tick in _untaken(piece, released):
             restart, middles, ends = _standing(piece, tick, piece.truth[released])
-            near += too_near(restart, middles, ends, piece.measures)
-            crossed += in_wrong_half(restart, middles, ends)
+            near += too_near(restart, middles, ends, rules, rules.tolerance_m)
+            crossed += in_wrong_half(restart, middles, ends, rules.tolerance_m)
         if released in piece.truth:
             distances.append(bool(near))
             if piece.game[released].state == State.KICK_OFF:

@@ -4,11 +4,12 @@ import math
 from typing import NamedTuple
 
 from procs.model.events import Event
-from procs.model.field import Field, Point
+from procs.model.field import Point
 from procs.model.game_states import State
 from procs.model.teams import Ends, Team, team_number
 from procs.referee.reasons import Reason
 from procs.referee.restarts import Restart, after_goal_line, corner_kick, goal_kick, kick_off
+from procs.referee.rules import Rules
 from procs.referee.sight import Sight
 from procs.referee.touches import Touches
 
@@ -22,7 +23,7 @@ class Verdict(NamedTuple):
     reason: Reason | None = None
 
 
-def judge(event: Event, piece: State, touches: Touches, sight: Sight, ends: Ends, field: Field) -> Verdict:
+def judge(event: Event, piece: State, touches: Touches, sight: Sight, ends: Ends, rules: Rules) -> Verdict:
     """Judges a ball in a goal, after the set piece with which this stretch of the game began.
 
     A ball that no robot has touched since, or since a person put it down, is no goal.
@@ -30,13 +31,13 @@ def judge(event: Event, piece: State, touches: Touches, sight: Sight, ends: Ends
     place = Point(event.x_m, event.y_m)
     conceding = ends.defender(place.x_m)
     if not (event.robot and touches.last):
-        return Verdict(Team.NONE, after_goal_line(place, Team.NONE, field, ends))
+        return Verdict(Team.NONE, after_goal_line(place, Team.NONE, rules, ends))
     scorer = conceding.other
     reason = _why_not(scorer, piece, touches, sight, ends)
     if reason and team_number(touches.last) is conceding:
-        return Verdict(Team.NONE, corner_kick(scorer, place, field), reason)
+        return Verdict(Team.NONE, corner_kick(scorer, place, rules), reason)
     if reason:
-        return Verdict(Team.NONE, goal_kick(conceding, math.copysign(1.0, place.y_m), field, ends), reason)
+        return Verdict(Team.NONE, goal_kick(conceding, math.copysign(1.0, place.y_m), rules, ends), reason)
     return Verdict(scorer, kick_off(conceding))
 
 

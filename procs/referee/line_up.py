@@ -6,13 +6,14 @@ from procs.model.teams import Ends, Team, team_number
 from procs.referee.cards import Cards
 from procs.referee.positions import misplaced
 from procs.referee.restarts import Restart
+from procs.referee.rules import Rules
 from procs.referee.sight import Sight
 
 
-def misplaced_robots(restart: Restart, sight: Sight, ends: Ends, field: Field) -> list[str]:
+def misplaced_robots(restart: Restart, sight: Sight, ends: Ends, rules: Rules) -> list[str]:
     """Returns the robots that are misplaced: distances are those to the ball, which may lie beside the spot."""
     keeper = sight.goalkeeper(restart.team.other)
-    return misplaced(restart._replace(spot=sight.ball), sight.robots, ends, field, keeper)
+    return misplaced(restart._replace(spot=sight.ball), sight.robots, ends, rules, keeper)
 
 
 def keeper_is_away(restart: Restart, sight: Sight, field: Field) -> bool:

@@ -105,7 +105,7 @@ class Match:
         if not self.stopped:
             self._ball.remember(ball, self.rules.field)
         if self.state is State.PLAY:
-            self.interrupt(restarts.ball_left_there(self._ball.left_at or ball, self.rules.field), Reason.BY_HAND)
+            self.interrupt(restarts.ball_left_there(self._ball.left_at or ball, self.rules), Reason.BY_HAND)
         elif not self.at_rest:
             self._enter(self.state, self.team, stopped=True)
         self.held, self._starting = True, False
@@ -188,14 +188,14 @@ class Match:
         self.calls.append(Call(self.state, Team.NONE, reason=Reason.PARK))
 
     def _begin_stretch(self, sight: Sight | None) -> None:
-        excused = misplaced_robots(self.restart, sight, self.ends, self.rules.field) if sight else []
+        excused = misplaced_robots(self.restart, sight, self.ends, self.rules) if sight else []
         ball = sight.ball if sight else self.spot
         keeper = sight.goalkeeper(self.team.other) if sight else ""
         self._stretch = Stretch(self.state, self.team, ball, frozenset(excused), keeper)
 
     def _next_penalty(self) -> Restart:
         assert self.shootout
-        return restarts.penalty(self.shootout.shooter, self.rules.field, self.ends)
+        return restarts.penalty(self.shootout.shooter, self.rules, self.ends)
 
     def _enter(self, state: State, team: Team, stopped: bool) -> None:
         self.state, self.team, self.stopped = state, team, stopped

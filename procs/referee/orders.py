@@ -87,16 +87,16 @@ def _set_piece(match: Match, sight: Sight, name: str, team: Team) -> str:
     if half:
         match.begin_half(half, Reason.BY_HAND, team)
         return ""
-    place, field, ends = match.restart_place(sight.ball), match.rules.field, match.ends
+    place, rules, ends = match.restart_place(sight.ball), match.rules, match.ends
     made: dict[State, Callable[[], Restart]] = {
         State.KICK_OFF: lambda: restarts.kick_off(team),
-        State.FREE_KICK: lambda: restarts.after_foul(place, team.other, field),
-        State.GOAL_KICK: lambda: restarts.goal_kick(team, place.y_m, field, ends),
-        State.THROW_IN: lambda: restarts.after_side_line(place, team.other, field),
+        State.FREE_KICK: lambda: restarts.after_foul(place, team.other, rules),
+        State.GOAL_KICK: lambda: restarts.goal_kick(team, place.y_m, rules, ends),
+        State.THROW_IN: lambda: restarts.after_side_line(place, team.other, rules),
         State.CORNER_KICK: lambda: restarts.corner_kick(
-            team, Point(ends.side_of(team.other) * field.half_length_m, place.y_m), field
+            team, Point(ends.side_of(team.other) * rules.field.half_length_m, place.y_m), rules
         ),
-        State.PENALTY: lambda: restarts.penalty(team, field, ends),
+        State.PENALTY: lambda: restarts.penalty(team, rules, ends),
     }
     if match.shootout and team is not match.shootout.shooter:
         if match.started:
@@ -160,7 +160,7 @@ def _simple(match: Match, sight: Sight, name: str) -> str:
             match.stop(sight.ball)
         case "drop_ball":
             place = match.restart_place(sight.ball)
-            match.interrupt(restarts.dropped_ball(place, match.rules.field), Reason.BY_HAND)
+            match.interrupt(restarts.dropped_ball(place, match.rules), Reason.BY_HAND)
         case "park":
             match.park(sight.robots)
         case "half_time":

@@ -6,7 +6,7 @@ a year are the simulation's own.
 
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, PositiveFloat
+from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, NonNegativeInt, PositiveFloat
 
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field as SoccerField
@@ -60,6 +60,24 @@ class Rules(BaseModel):
     """
     ends_s: NonNegativeFloat = 20.0
     """Longest such wait at the beginning of a half, when the robots may have changed ends."""
+    own_m: NonNegativeFloat = 2.0
+    """Least distance to the ball of the team that takes a set piece, except for the taker (2016: 2 m)."""
+    theirs_m: NonNegativeFloat = 3.0
+    """Least distance of the other team, except for one robot in its own penalty area (2016: 3 m)."""
+    dropped_m: NonNegativeFloat = 1.0
+    """Least distance of every robot at a dropped ball (2016: 1 m)."""
+    tolerance_m: NonNegativeFloat = 0.05
+    """A set piece does not wait for a robot that is nearer, or further in the wrong half, by less than this."""
+    intrusion_m: NonNegativeFloat = 0.3
+    """A robot may come nearer, or into the other half, by so much before the set piece is repeated."""
+    repeats: NonNegativeInt = 2
+    """A set piece is repeated so often after breaches; then the game goes on in spite of them."""
+    corner_inset_m: NonNegativeFloat = 0.2
+    """Distance of a corner kick's ball from both lines."""
+    throw_in_inset_m: NonNegativeFloat = 0.1
+    """Distance of a throw-in's ball from the touch line."""
+    free_kick_inset_m: NonNegativeFloat = 0.5
+    """Least distance of a free kick's ball from the touch lines."""
     set_piece_s: PositiveFloat = 7.0
     """Time for a set piece; after it the other team may play the ball, too (2016: 7 s)."""
     moved_m: PositiveFloat = 0.5
@@ -68,6 +86,12 @@ class Rules(BaseModel):
     """Within this time the taker of a penalty that decides no match must reach the ball (2016: 10 s)."""
     pass_m: PositiveFloat = 1.0
     """A team that won the ball in its own half must pass it so far before a goal counts (2016: 1 m)."""
+    lost_s: PositiveFloat = 0.25
+    """A robot that does not touch the ball for longer does not carry it any more."""
+    free_m: PositiveFloat = 0.5
+    """Nor does a robot from which the ball has rolled further than this."""
+    won_s: PositiveFloat = 0.5
+    """A robot that carries the ball for longer has won it, and did not only turn it."""
     deadlock_s: PositiveFloat = 10.0
     """A ball that stays within `deadlock_m` for so long is dropped elsewhere."""
     deadlock_m: PositiveFloat = 0.5
@@ -76,12 +100,22 @@ class Rules(BaseModel):
     """Closing speed above which a collision is a foul of the faster robot."""
     pushing_m: PositiveFloat = 0.4
     """A robot that drives a rival so far before itself commits a foul."""
+    contact_m: NonNegativeFloat = 0.005
+    """Robots whose gap is larger do not touch each other."""
+    apart_m: NonNegativeFloat = 0.02
+    """A push is over when the gap is larger; smaller ones come from bounces."""
+    shove_m_s: NonNegativeFloat = 0.1
+    """Two robots that move faster than this in the pusher's direction are a push."""
     dribbling_m: PositiveFloat = 3.0
     """Longest way with the ball without setting it free (2019: 3 m)."""
     holding_s: PositiveFloat = 1.0
     """Longest time for which a robot may keep the ball from rolling (2016: 1 s)."""
     holding_m: PositiveFloat = 0.3
     """Longest way on which a robot may pull the ball back (2016: 0.30 m)."""
+    still_m_s: NonNegativeFloat = 0.1
+    """A ball that is not faster does not roll."""
+    back_m_s: NonNegativeFloat = 0.05
+    """A ball that comes faster than this towards its carrier is pulled back."""
     holding_pause_s: PositiveFloat = 4.0
     """Holding is counted anew after this time without it (2016: 4 s)."""
     area_s: PositiveFloat = 10.0

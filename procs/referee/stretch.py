@@ -58,8 +58,8 @@ class Stretch:
     def watch(self, duration_s: float, sight: Sight, ends: Ends, rules: Rules) -> Scene:
         """Takes a tick of `duration_s`, and returns it as the rules see it."""
         self.touches.watch(sight, ends, self.released, rules)
-        self._carrier.watch(duration_s, sight)
-        self.touches.watch_rivals(duration_s, sight, self._carrier.robot)
+        self._carrier.watch(duration_s, sight, rules)
+        self.touches.watch_rivals(duration_s, sight, self._carrier.robot, rules)
         return Scene(duration_s, sight, rules, ends, self.touches, self._carrier)
 
     def rolled(self, ball: Point, rules: Rules) -> bool:

@@ -8,10 +8,6 @@ from procs.model.teams import Ends, Team, team_number
 from procs.referee.rules import Rules
 from procs.referee.sight import Sight
 
-_LOST_S = 0.25  # a robot that does not touch the ball for longer does not carry it any more
-_FREE_M = 0.5  # nor does a robot from which the ball has rolled so far
-_HAS_S = 0.5  # a robot that carries the ball for so long has won it, and did not only turn it
-
 
 class Touches:
     """Touches in a stretch of the game, from the placing of the ball to the next interruption."""
@@ -62,11 +58,12 @@ class Touches:
         """Returns whether a robot of a team has touched the ball, also one that has left the field since."""
         return any(team_number(robot) is team for robot in self.robots)
 
-    def watch_rivals(self, duration_s: float, sight: Sight, carrier: str) -> None:
+    def watch_rivals(self, duration_s: float, sight: Sight, carrier: str, rules: Rules) -> None:
         """Notes whether rivals of the taker have had the ball; `carrier` is the robot that carries it now."""
         kickers = {event.robot for event in sight.events if event.kind is Kind.KICK}
         self._rival_s = self._rival_s + duration_s if self._is_rival(carrier) else 0.0
-        self.intercepted = self.intercepted or self._rival_s > _HAS_S or any(map(self._is_rival, kickers))
+        won = self._rival_s > rules.won_s or any(map(self._is_rival, kickers))
+        self.intercepted = self.intercepted or won
 
     def _received(self, robot: str) -> None:
         """Notes the touch of a ball that has rolled freely since the touch before, if a team mate set it free."""
@@ -98,12 +95,12 @@ class Carrier:
         self._missing_s = 0.0
         self._place = self.since
 
-    def watch(self, duration_s: float, sight: Sight) -> None:
+    def watch(self, duration_s: float, sight: Sight, rules: Rules) -> None:
         """Takes the touches of a tick."""
         touching = sight.touching
         alone = min(touching) if len(touching) == 1 else ""
         self._missing_s = 0.0 if touching else self._missing_s + duration_s
-        free = self._missing_s > _LOST_S or math.dist(sight.ball, self._place) > _FREE_M
+        free = self._missing_s > rules.lost_s or math.dist(sight.ball, self._place) > rules.free_m
         if touching:
             self._place = sight.ball
         if alone != self.robot and (touching or free):

@@ -20,8 +20,6 @@ from procs.referee.restarts import Restart
 from procs.referee.shootout import penalty_scored
 from procs.referee.sight import LEAVES, Sight
 
-_REPEATS = 2  # of a set piece; then the game goes on in spite of a breach
-
 
 class Whistle(Match):
     """Leads a match: call `step` once a tick and read the attributes."""
@@ -132,7 +130,7 @@ class Whistle(Match):
             return
         longest_s = rules.ends_s if self._changing_ends else rules.positions_s
         had_time = self.time_in_state_s >= stoppage_s + longest_s and self._ball.laid_s >= longest_s
-        misplaced = misplaced_robots(self.restart, sight, self.ends, rules.field)
+        misplaced = misplaced_robots(self.restart, sight, self.ends, rules)
         ready = not self._ball.rolls and not misplaced and not keeper_is_away(self.restart, sight, rules.field)
         if ready or had_time:
             self.start(sight)
@@ -169,18 +167,18 @@ class Whistle(Match):
 
     def _judge(self, event: Event, sight: Sight) -> goals.Verdict:
         """Returns which set piece follows a ball that has left the field, and which team has scored with it."""
-        field, place, team = self.rules.field, Point(event.x_m, event.y_m), team_number(event.robot)
+        rules, place, team = self.rules, Point(event.x_m, event.y_m), team_number(event.robot)
         if event.kind is Kind.OUT_SIDE:
-            return goals.Verdict(Team.NONE, restarts.after_side_line(place, team, field))
+            return goals.Verdict(Team.NONE, restarts.after_side_line(place, team, rules))
         if event.kind is Kind.OUT_END:
-            return goals.Verdict(Team.NONE, restarts.after_goal_line(place, team, field, self.ends))
-        return goals.judge(event, self._stretch.piece, self._stretch.touches, sight, self.ends, field)
+            return goals.Verdict(Team.NONE, restarts.after_goal_line(place, team, rules, self.ends))
+        return goals.judge(event, self._stretch.piece, self._stretch.touches, sight, self.ends, rules)
 
     def _watch_play(self, scene: Scene) -> None:
         ball = scene.sight.ball
         self._stretch.rolled(ball, self.rules)
         if not self._punish(scene) and self._stretch.deadlocked(scene):
-            self.interrupt(restarts.dropped_ball(ball, self.rules.field), Reason.DEADLOCK)
+            self.interrupt(restarts.dropped_ball(ball, self.rules), Reason.DEADLOCK)
 
     def _watch_set_piece(self, scene: Scene) -> None:
         if self._punish(scene) or self._repeat(scene) or self._repeat_after_bystander(scene):
@@ -244,9 +242,9 @@ class Whistle(Match):
             self._stop_for(fouls, ball)
 
     def _repeat(self, scene: Scene) -> bool:
-        """Has the set piece repeated after a breach, twice at most; returns whether it does.
+        """Has the set piece repeated after a breach, `repeats` times at most; returns whether it does.
 
-        The third breach is only counted as a foul, once. A penalty is repeated as often as defenders play its ball: the
+        A further breach is only counted as a foul, once. A penalty is repeated as often as defenders play its ball: the
         cards for that end it.
         """
         stretch = self._stretch
@@ -259,7 +257,7 @@ class Whistle(Match):
         return self._repeat_for(foul.reason, foul.robot, always=played)
 
     def _repeat_after_bystander(self, scene: Scene) -> bool:
-        """Has the set piece repeated, twice at most, if a robot that takes no part moved its ball before any other."""
+        """Has the set piece repeated as often if a robot that takes no part moved its ball before any other."""
         touches = scene.touches
         untouched = self.state is not State.PLAY and not touches.robots
         if not (untouched and touches.bystander and self._stretch.rolled(scene.sight.ball, self.rules)):
@@ -267,8 +265,8 @@ class Whistle(Match):
         return self._repeat_for(Reason.EARLY_TOUCH, touches.bystander)
 
     def _repeat_for(self, reason: Reason, robot: str, always: bool = False) -> bool:
-        """Has the set piece repeated because of a robot, unless it was repeated twice; returns whether it does."""
-        if self._repeats >= _REPEATS and not always:
+        """Has the set piece repeated because of a robot, `repeats` times at most; returns whether it does."""
+        if self._repeats >= self.rules.repeats and not always:
             return False
         repeats = self._repeats + 1
         self.interrupt(self.restart, reason, robot)
@@ -313,13 +311,13 @@ class Whistle(Match):
 
     def _after_fouls(self, fouls: list[Foul], ball: Point) -> Restart:
         """Returns the free kick or the penalty that a foul brings; fouls of both teams bring a dropped ball."""
-        foul, field = fouls[0], self.rules.field
+        foul, rules = fouls[0], self.rules
         offender = team_number(foul.robot)
         if len(fouls) > 1:
-            return restarts.dropped_ball(ball, field)
-        if foul.direct and field.in_penalty_area(*foul.place, self.ends.side_of(offender)):
-            return restarts.penalty(offender.other, field, self.ends)
-        return restarts.after_foul(foul.place, offender, field)
+            return restarts.dropped_ball(ball, rules)
+        if foul.direct and rules.field.in_penalty_area(*foul.place, self.ends.side_of(offender)):
+            return restarts.penalty(offender.other, rules, self.ends)
+        return restarts.after_foul(foul.place, offender, rules)
 
     def _count_foul(self, foul: Foul) -> None:
         """Counts a foul against its robot, and shows the card that it brings."""
@@ -328,7 +326,7 @@ class Whistle(Match):
             self.calls.append(Call(self.state, team_number(foul.robot), robot=foul.robot, card=card))
 
     def _goal_kick(self) -> Restart:
-        return restarts.goal_kick(self.team.other, 1.0, self.rules.field, self.ends)
+        return restarts.goal_kick(self.team.other, 1.0, self.rules, self.ends)
 
     def _play(self, ball: Point, late: bool = False) -> None:
         self._stretch.begin_play(ball, self.team if late else Team.NONE)

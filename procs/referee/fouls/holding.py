@@ -8,9 +8,6 @@ from procs.model.geometry import between
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.reasons import Reason
 
-_STILL_M_S = 0.1  # a slower ball does not roll
-_BACK_M_S = 0.05  # a ball that comes faster towards its carrier is pulled back
-
 
 class Holding:
     """Counts how long and how far the carrier has held the ball."""
@@ -23,7 +20,7 @@ class Holding:
 
     def watch(self, scene: Scene) -> Foul | None:
         """Returns the foul of a robot that has held the ball for too long or too far."""
-        ball, before, robot = scene.sight.ball, self._before, scene.carrier.robot
+        ball, before, robot, rules = scene.sight.ball, self._before, scene.carrier.robot, scene.rules
         middle = scene.sight.robots.get(robot)
         was = self._robots.get(robot, middle)
         self._before, self._robots = ball, scene.sight.robots
@@ -36,14 +33,14 @@ class Holding:
         moved_m = math.dist(before, ball)
         axis = between(before, ball, 0.5), between(was, middle, 0.5)
         back_m = min(_way_along_m(axis, before, ball), _way_along_m(axis, was, middle))
-        pulls = back_m > _BACK_M_S * scene.duration_s
-        if not pulls and moved_m > _STILL_M_S * scene.duration_s:
+        pulls = back_m > rules.back_m_s * scene.duration_s
+        if not pulls and moved_m > rules.still_m_s * scene.duration_s:
             self._rolls(scene)
             return None
         self._free_s = 0.0
         self._held_s += scene.duration_s
         self._pulled_m += back_m if pulls else 0.0
-        if self._held_s <= scene.rules.holding_s and self._pulled_m <= scene.rules.holding_m:
+        if self._held_s <= rules.holding_s and self._pulled_m <= rules.holding_m:
             return None
         self._held_s = self._pulled_m = 0.0
         return Foul(robot, Reason.HOLDING, ball)

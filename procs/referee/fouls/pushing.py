@@ -9,9 +9,6 @@ from procs.model.teams import team_number
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.reasons import Reason
 
-_TOUCHING_M = 0.005  # robots whose gap is smaller touch each other
-_APART_M = 0.02  # a push is over when the gap is larger; smaller ones come from bounces
-_SHOVES_M_S = 0.1  # two robots that move faster in the pusher's direction are a push
 _REST = Point(0.0, 0.0)
 
 
@@ -34,18 +31,18 @@ class Pushing:
 
     def watch(self, scene: Scene) -> list[Foul]:
         """Returns the fouls of robots that pushed a rival too far, except of those that a rival drove there."""
-        robots, shoves = scene.sight.robots, {}
+        robots, rules, shoves = scene.sight.robots, scene.rules, {}
         for pusher, pushed in itertools.permutations(sorted(robots), 2):
-            gap_m = math.dist(robots[pusher], robots[pushed]) - 2 * scene.rules.robot.radius_m
-            if team_number(pusher) is team_number(pushed) or gap_m > _APART_M:
+            gap_m = math.dist(robots[pusher], robots[pushed]) - 2 * rules.robot.radius_m
+            if team_number(pusher) is team_number(pushed) or gap_m > rules.apart_m:
                 continue
             both_m_s = min(self._towards_m_s(scene, pusher, pushed, of) for of in (pusher, pushed))
-            if both_m_s > _SHOVES_M_S:
-                way_m = both_m_s * scene.duration_s if gap_m <= _TOUCHING_M else 0.0
+            if both_m_s > rules.shove_m_s:
+                way_m = both_m_s * scene.duration_s if gap_m <= rules.contact_m else 0.0
                 shoves[pusher, pushed] = self._pushed_m.get((pusher, pushed), 0.0) + way_m
         driven = {pushed for _, pushed in shoves}
         self._pushed_m = {pair: way_m for pair, way_m in shoves.items() if pair[0] not in driven}
-        guilty = [pusher for (pusher, _), way_m in self._pushed_m.items() if way_m > scene.rules.pushing_m]
+        guilty = [pusher for (pusher, _), way_m in self._pushed_m.items() if way_m > rules.pushing_m]
         if guilty:
             self._pushed_m = {}
         return [Foul(pusher, Reason.PUSHING, robots[pusher], direct=True) for pusher in guilty]

@@ -9,9 +9,6 @@ from procs.referee.positions import in_wrong_half, too_near
 from procs.referee.reasons import Reason
 from procs.referee.restarts import Restart
 
-_INTRUSION_M = 0.3
-"""A robot may come nearer, or into the other half, by so much before the set piece is repeated."""
-
 
 def breach(scene: Scene, restart: Restart, excused: frozenset[str], keeper: str, released: bool) -> Foul | None:
     """Returns the breach that repeats a set piece; robots that were misplaced at its start are excused.
@@ -36,14 +33,14 @@ def breach(scene: Scene, restart: Restart, excused: frozenset[str], keeper: str,
         return Foul(_first(intruders, restart.team), Reason.TOO_NEAR, restart.spot)
     if taken:
         return None
-    crossed = set(in_wrong_half(restart, scene.sight.robots, scene.ends, _INTRUSION_M)) - excused
+    crossed = set(in_wrong_half(restart, scene.sight.robots, scene.ends, scene.rules.intrusion_m)) - excused
     if crossed:
         return Foul(_first(crossed, restart.team), Reason.WRONG_HALF, restart.spot)
     return _keeper_left_goal(scene, restart, keeper) if keeper not in excused else None
 
 
 def _too_near(scene: Scene, restart: Restart) -> list[str]:
-    return too_near(restart, scene.sight.robots, scene.ends, scene.rules.field, _INTRUSION_M)
+    return too_near(restart, scene.sight.robots, scene.ends, scene.rules, scene.rules.intrusion_m)
 
 
 def _first(robots: Collection[str], team: Team) -> str:
@@ -55,6 +52,6 @@ def _keeper_left_goal(scene: Scene, restart: Restart, keeper: str) -> Foul | Non
     if restart.state is not State.PENALTY or not keeper or keeper != scene.sight.goalkeeper(restart.team.other):
         return None
     side = scene.ends.side_of(restart.team.other)
-    if scene.rules.field.in_goal_area(*scene.sight.robots[keeper], side, _INTRUSION_M):
+    if scene.rules.field.in_goal_area(*scene.sight.robots[keeper], side, scene.rules.intrusion_m):
         return None
     return Foul(keeper, Reason.KEEPER_LEFT, restart.spot)

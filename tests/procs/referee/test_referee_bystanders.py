@@ -94,7 +94,7 @@ def test_ball_that_a_person_moves_is_played() -> None:
 
 def test_dropped_ball_off_a_robot_sent_off_is_dropped_again() -> None:
     script = set_piece(State.FREE_KICK, CYAN)
-    script.whistle.interrupt(restarts.dropped_ball(Point(0.0, 3.0), script.whistle.rules.field))
+    script.whistle.interrupt(restarts.dropped_ball(Point(0.0, 3.0), script.whistle.rules))
     script.started().whistle.card("magenta3", Card.RED)
     script.touch("magenta3", Kind.KICK)
     script.ball = Point(0.0, 7.2)

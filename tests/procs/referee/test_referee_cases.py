@@ -283,11 +283,11 @@ def test_match_does_not_wait_for_a_robot_with_a_red_card() -> None:
         del script.robots[name]
     script.started()
     script.whistle.card("cyan1", Card.RED)
-    script.whistle.interrupt(restarts.after_foul(Point(1.0, 1.0), CYAN, script.whistle.rules.field))
+    script.whistle.interrupt(restarts.after_foul(Point(1.0, 1.0), CYAN, script.whistle.rules))
     script.wait(5.0)
     assert not script.whistle.stopped
     script.whistle.take_out("magenta1", Reason.REPAIR)
-    script.whistle.interrupt(restarts.after_foul(Point(1.0, 1.0), CYAN, script.whistle.rules.field))
+    script.whistle.interrupt(restarts.after_foul(Point(1.0, 1.0), CYAN, script.whistle.rules))
     script.wait(19.0)
     assert script.whistle.stopped, "one under repair comes back"
     script.wait(3.0)
@@ -304,7 +304,7 @@ def test_match_waits_for_a_team_that_is_beside_the_field(least_robots: int) -> N
     assert not script.whistle.stopped
     for name in ("magenta1", "magenta2", "magenta3"):
         script.whistle.card(name, Card.RED)
-    script.whistle.interrupt(restarts.after_foul(Point(1.0, 1.0), MAGENTA, script.whistle.rules.field))
+    script.whistle.interrupt(restarts.after_foul(Point(1.0, 1.0), MAGENTA, script.whistle.rules))
     script.wait(5.0)
     assert not script.whistle.stopped, "none of magenta comes back"
 

@@ -346,7 +346,7 @@ def test_penalty_counts_without_a_second_robot(view: View) -> None:
 @seen_by_all
 def test_penalty_that_is_not_taken(view: View) -> None:
     match = in_play(view)
-    match.give(restarts.penalty(view.ours, match.script.whistle.rules.field, match.script.whistle.ends))
+    match.give(restarts.penalty(view.ours, match.script.whistle.rules, match.script.whistle.ends))
     match.script.started()
     match.wait(9.9)
     assert match.decision.state is State.PENALTY
@@ -358,7 +358,7 @@ def test_penalty_that_is_not_taken(view: View) -> None:
 @pytest.mark.parametrize(("shot", "scores"), [(False, False), (True, False), (True, True)])
 def test_foul_of_the_defenders_at_a_penalty(view: View, shot: bool, scores: bool) -> None:
     match = in_play(view)
-    match.give(restarts.penalty(view.ours, match.script.whistle.rules.field, match.script.whistle.ends))
+    match.give(restarts.penalty(view.ours, match.script.whistle.rules, match.script.whistle.ends))
     match.script.started()
     if shot:
         match.touch("our2")
