@@ -58,6 +58,16 @@ class Match:
         return self.state in (State.HALF_TIME, State.FROZEN)
 
     @property
+    def standing(self) -> str:
+        """The score for people, such as `cyan 1:0 magenta`."""
+        return f"cyan {self.score[Team.CYAN]}:{self.score[Team.MAGENTA]} magenta"
+
+    @property
+    def drawn(self) -> bool:
+        """Whether both teams have as many goals."""
+        return self.score[Team.CYAN] == self.score[Team.MAGENTA]
+
+    @property
     def spot(self) -> Point:
         """Place of the ball at the set piece; world frame."""
         return self._ball.spot

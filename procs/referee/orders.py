@@ -117,8 +117,7 @@ def _goal(match: Match, team: Team, more: bool) -> str:
         match.goal(team)
         match.interrupt(restarts.kick_off(team.other))
     elif match.score[team] == 0:
-        cyan, magenta = match.score[Team.CYAN], match.score[Team.MAGENTA]
-        return f"{team.name.lower()} has no goal to take back; the score is cyan {cyan}:{magenta} magenta"
+        return f"{team.name.lower()} has no goal to take back; the score is {match.standing}"
     else:
         match.take_back(team)
     return ""

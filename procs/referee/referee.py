@@ -189,8 +189,7 @@ class Referee(Component):
         return f"{what}{whose}{why}, {self._stands()}"
 
     def _stands(self) -> str:
-        score = self._whistle.score
-        return f"cyan {score[Team.CYAN]}:{score[Team.MAGENTA]} magenta, {self._when()}"
+        return f"{self._whistle.standing}, {self._when()}"
 
     def _when(self) -> str:
         return f"{self._whistle.time_in_half_s:.1f} s into half {self._whistle.half}"

@@ -1,6 +1,6 @@
 """Commands by hand that make no sense at the state of the match: after its end, in a break, between deciding penalties.
 
-Cards, repairs and the score can be put right at any time, and a half can begin at any time.
+Cards, repairs and the score can be put right at any time, and a half can begin at any time; penalties decide a draw.
 """
 
 from procs.model.game_states import State
@@ -40,6 +40,8 @@ def why_not(match: Match, name: str, team: Team) -> str:
         return "nothing to start: the game runs; stop or a set piece interrupts it"
     if begun_by(match, name):
         return ""
+    if name == "penalties" and not match.drawn:
+        return f"no penalties: they decide a draw, and the score is {match.standing}; goal or subgoal corrects it"
     if match.at_rest and (name in SET_PIECES or name in ("start", "drop_ball", "half_time")):
         return f"no {_words(name)} {_why_not_at_rest(match)}"
     if name == "half_time" and not halves.after(match.half, match.score, match.rules):
@@ -64,7 +66,7 @@ def _why_not_between_penalties(match: Match, name: str, team: Team) -> str:
 def _goes_on(match: Match) -> bool:
     """Returns whether another half may follow the break or the end of the match that is at hand."""
     if match.half in (halves.SECOND, halves.FOURTH):
-        return match.at_rest and match.score[Team.CYAN] == match.score[Team.MAGENTA]
+        return match.at_rest and match.drawn
     return match.state is State.HALF_TIME
 
 

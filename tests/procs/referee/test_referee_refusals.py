@@ -274,3 +274,17 @@ def test_decided_penalties_led_by_hand_wait_for_the_end() -> None:
     assert (script.state[0], counted(script)) == (State.PENALTY, ([1, 1], [1, 0]))
     assert ask(script, "end_game") == ""
     assert script.whistle.over
+
+
+@pytest.mark.parametrize("at", ["", "half_time", "end_game"])
+def test_penalties_decide_only_a_draw(at: str) -> None:
+    """The protocol of the RefBox has no command for them: base stations would refuse the penalty."""
+    script = Script(decide=True, half_time_s=60.0)
+    for name, team in (("second_half_overtime", ""), (at, ""), ("goal", "magenta")):
+        assert not name or ask(script, name, team) == ""
+    before = script.state
+    refused = "no penalties: they decide a draw, and the score is cyan 0:1 magenta; goal or subgoal corrects it"
+    assert ask(script, "penalties") == refused
+    assert (script.state, script.whistle.half) == (before, 4)
+    assert ask(script, "subgoal", "magenta") == ask(script, "penalties") == ""
+    assert (script.state, script.whistle.half) == ((State.PENALTY, CYAN, True), 5)
