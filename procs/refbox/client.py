@@ -14,6 +14,7 @@ from procs.model.units import US_PER_S
 from procs.refbox.connection import Connection
 from procs.refbox.protocol import PORT, Addresses, Command, Host, ProtocolError, decode
 from procs.refbox.world_state import best_belief, encode, intention_of, world_state
+from procs.referee.orders import OF_ROBOT
 
 _IGNORED = frozenset({"WELCOME", "IS_ALIVE", "REPAIR_END", "TESTMODE_ON", "TESTMODE_OFF"})
 _OTHER_NAMES = {"GAMEOVER": "END_GAME", "GAME_OVER": "END_GAME"}
@@ -116,7 +117,7 @@ class RefBoxClient(Component):
         asked = self.referee_command.value
         asked.name = _OTHER_NAMES.get(command.name, command.name).lower()
         asked.team = command.team
-        asked.robot = self._named(command) if command.robot else ""
+        asked.robot = self._named(command) if command.robot and asked.name in OF_ROBOT else ""
         self._sent.append((command, self.referee_command.call(timeout_s=_TIMEOUT_S)))
 
     def _named(self, command: Command) -> str:

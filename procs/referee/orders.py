@@ -20,6 +20,8 @@ _USUAL = Names(PLAYERS)
 TEAMS = {"": Team.NONE, "cyan": Team.CYAN, "magenta": Team.MAGENTA}
 """Teams by the names that commands give them."""
 CARDS = {"yellow_card": Card.YELLOW, "double_yellow": Card.DOUBLE_YELLOW, "red_card": Card.RED}
+OF_ROBOT = (*CARDS, *REPAIRS)
+"""Commands that name a robot."""
 GOALS = ("goal", "subgoal")
 """`subgoal` takes a goal back."""
 PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game", "reset")
@@ -32,7 +34,7 @@ HALVES = {
     "penalties": halves.PENALTIES,
 }
 """Commands that begin a part of the match."""
-COMMANDS = (*SET_PIECES, *GOALS, *CARDS, *REPAIRS, *HALVES, *PLAIN)
+COMMANDS = (*SET_PIECES, *GOALS, *OF_ROBOT, *HALVES, *PLAIN)
 """All commands."""
 
 
@@ -52,7 +54,9 @@ def mistake_in(name: str, team: str, robot: str, robots: Collection[str], names:
         return f"no team '{team}'; {right_name(team, filter(None, TEAMS))}"
     if name in (*SET_PIECES, *GOALS) and not team:
         return f"'{name}' needs a team: cyan or magenta"
-    if name in (*CARDS, *REPAIRS):
+    if robot and name not in OF_ROBOT:
+        return f"'{name}' takes no robot, so not {robot}; commands with a robot are {', '.join(OF_ROBOT)}"
+    if name in OF_ROBOT:
         there = ", ".join(robots) or "none"
         if not team and not robot:
             return f"'{name}' needs a team or a robot; there are {there}"
@@ -74,7 +78,7 @@ def carry_out(match: Match, sight: Sight, name: str, team: str = "", robot: str 
         return _set_piece(match, sight, name, TEAMS[team])
     if name in GOALS:
         return _goal(match, TEAMS[team], name == "goal")
-    if name in CARDS or name in REPAIRS:
+    if name in OF_ROBOT:
         return _robot(match, sight, name, TEAMS[team], robot, names)
     if name in HALVES:
         match.begin_half(HALVES[name], first=match.kicks_off(HALVES[name]))

@@ -343,10 +343,12 @@ def test_robots_have_the_numbers_of_the_players(refbox: socket.socket) -> None:
     connection, _ = refbox.accept()
     with connection:
         connection.sendall(say("REPAIR", MAGENTA, robotID=7) + say("REPAIR", CYAN, robotID=7))
-        while len(bench.port("referee_command").sent) < 2:
+        connection.sendall(say("CORNER", CYAN, robotID=7))
+        while len(bench.port("referee_command").sent) < 3:
             bench.iterate()
     bench.finalize()
-    assert [each.robot for each in bench.port("referee_command").sent] == ["anna", "cyan7"]
+    robots = [each.robot for each in bench.port("referee_command").sent]
+    assert robots == ["anna", "cyan7", ""], "a corner kick has no robot"
 
 
 def test_card_is_sent_with_the_number_of_the_player() -> None:

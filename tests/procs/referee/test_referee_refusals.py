@@ -6,6 +6,8 @@ from procs.model.events import Kind
 from procs.model.field import Point
 from procs.model.game_states import State
 from procs.model.teams import Team
+from procs.referee.orders import carry_out
+from procs.referee.sight import Sight
 from tests.procs.referee.script import CYAN, MAGENTA, Script
 from tests.procs.referee.test_referee_by_hand import ask
 
@@ -288,3 +290,14 @@ def test_penalties_decide_only_a_draw(at: str) -> None:
     assert (script.state, script.whistle.half) == (before, 4)
     assert ask(script, "subgoal", "magenta") == ask(script, "penalties") == ""
     assert (script.state, script.whistle.half) == ((State.PENALTY, CYAN, True), 5)
+
+
+@pytest.mark.parametrize("command", ["start", "goal", "corner", "drop_ball", "park", "second_half", "reset"])
+def test_robot_of_a_command_without_one_is_refused(command: str) -> None:
+    script = Script().playing()
+    before, team = script.state, "cyan" if command in ("goal", "corner") else ""
+    assert carry_out(script.whistle, Sight(script.ball, robots=script.robots), command, team, "cyan2") == (
+        f"'{command}' takes no robot, so not cyan2; "
+        "commands with a robot are yellow_card, double_yellow, red_card, repair, substitution"
+    )
+    assert (script.state, script.score) == (before, (0, 0))
