@@ -22,6 +22,7 @@ _SET_PIECES = {
 _GOALS_MAX = 99  # a RefBox counts no further
 _HALVES = {1: "FIRST_HALF", 2: "SECOND_HALF", 3: "FIRST_HALF_OVERTIME", 4: "SECOND_HALF_OVERTIME"}
 _OVERTIME_IS_DRAWN = [Command("SECOND_HALF_OVERTIME"), Command("STOP"), Command("END_GAME")]
+_GAMEOVER = Command("GAMEOVER")
 _BREAKS = (game_state_t.HALF_TIME, game_state_t.FROZEN)
 _CARDS = {game_event_t.YELLOW: "YELLOW_CARD", game_event_t.DOUBLE_YELLOW: "DOUBLE_YELLOW", game_event_t.RED: "RED_CARD"}
 _AWAY = (game_event_t.DOUBLE_YELLOW, game_event_t.RED)
@@ -39,26 +40,26 @@ def news(
     is off the field for no decision in it is under repair.
     """
     if before is None:
-        in_penalties = now.half == halves.PENALTIES and now.state not in _BREAKS
+        in_penalties = now.half == halves.PENALTIES
         score = _until_penalty(now, events) if in_penalties else _half(now.half) + _scores(game_state_t(), now)
         commands = score + _robots(game_state_t(), now, _in_force(events[: now.decisions], now), players)
         return commands + _break(now) + _stopped(now) + ([] if now.stopped else [Command("START")])
-    if _is_new_match(before, now, events):
+    if _is_new_match(before, now, events) or (_is_over(before) and not _is_over(now)):
         return [Command("RESET"), *news(None, now, events, players)]
     commands = _scores(before, now) + _robots(before, now, events, players)
     if now.state != before.state and now.state in _BREAKS:
         return commands + _break(now)
+    if _is_over(now) and not _is_over(before):
+        return [*commands, _GAMEOVER]
     start = [] if now.stopped else [Command("START")]
+    stop = [Command("STOP")] if now.stopped and not before.stopped else []
     begins = now.half != before.half or _begins_again(before, now)
     if begins and now.half == halves.PENALTIES:
         drawn = before.half == halves.FOURTH and before.state in _BREAKS
-        return commands + ([] if drawn else _OVERTIME_IS_DRAWN) + _stopped(now) + start
-    if begins:
-        commands += _half(now.half)
+        return commands + stop + ([] if drawn else _OVERTIME_IS_DRAWN) + _stopped(now) + start
+    commands += stop + (_half(now.half) if begins else [])
     whistled = begins or _piece(now) != _piece(before) or _commanded(events[before.decisions : now.decisions])
-    if now.stopped and not before.stopped:
-        commands += [Command("STOP"), *_stopped(now)]
-    elif before.stopped and whistled:
+    if stop or (before.stopped and whistled):
         commands += _stopped(now)
     return commands + (start if before.stopped else [])
 
@@ -130,14 +131,18 @@ def _begins_again(before: game_state_t, now: game_state_t) -> bool:
 
 
 def _break(now: game_state_t) -> list[Command]:
-    """Returns what begins a break; overtime or penalties may follow END_GAME, but nothing follows GAMEOVER."""
+    """Returns what begins a break; overtime or penalties may follow END_GAME, but only RESET follows GAMEOVER."""
     if now.state not in _BREAKS:
         return []
     if now.state == game_state_t.HALF_TIME and now.half in (1, 3):
         return [Command("STOP"), Command("HALF_TIME")]
+    return [Command("STOP"), Command("END_GAME")] + [_GAMEOVER] * _is_over(now)
+
+
+def _is_over(now: game_state_t) -> bool:
+    """Returns whether the match has ended, and no overtime or penalties may follow."""
     drawn = now.half in (2, 4) and now.score_cyan == now.score_magenta
-    over = now.state == game_state_t.FROZEN and not drawn
-    return [Command("STOP"), Command("END_GAME")] + [Command("GAMEOVER")] * over
+    return now.state == game_state_t.FROZEN and not drawn
 
 
 def _half(half: int) -> list[Command]:
@@ -157,7 +162,7 @@ def _scores(before: game_state_t, now: game_state_t) -> list[Command]:
 
 
 def _until_penalty(now: game_state_t, events: Sequence[game_event_t]) -> list[Command]:
-    """Returns what leads to the deciding penalty at hand: a drawn overtime, its end, and the penalties scored."""
+    """Returns what leads to the deciding penalty at hand, or to the end of all: a drawn overtime, and those scored."""
     penalties = [event for event in events[: now.decisions] if event.half == halves.PENALTIES]
     scored = Counter(event.team for event in penalties if event.goal)
     scored.subtract(event.team for event in penalties if event.reason == Reason.SUBGOAL)

@@ -57,6 +57,7 @@ def heard_of(*ticks: str) -> list[str]:
         ("goal cyan, goal magenta, red_card cyan2", "GOAL 1, STOP, KICKOFF 2, GOAL 2, KICKOFF 1, RED_CARD 1 2"),
         ("red_card magenta3, goal cyan", "RED_CARD 2 3, GOAL 1, STOP, KICKOFF 2"),
         ("repair cyan2, substitution cyan2", "REPAIR 1 2, SUBSTITUTION 1 2"),
+        ("second_half, start", "STOP, SECOND_HALF, KICKOFF 2, START"),
         ("half_time, second_half, start", "STOP, HALF_TIME, SECOND_HALF, KICKOFF 2, START"),
         ("goal cyan, reset, goal magenta", "GOAL 1, STOP, KICKOFF 2, RESET, FIRST_HALF, KICKOFF 1, GOAL 2"),
         ("goal cyan, corner nobody, goal cyan", "GOAL 1, STOP, KICKOFF 2, GOAL 1"),

@@ -125,8 +125,34 @@ def test_stream_is_cut_at_nul_bytes_wherever_they_arrive() -> None:
         (
             state(game_state_t.FROZEN, half=5, score_cyan=1),
             state(game_state_t.PENALTY, 2, half=5, score_cyan=1),
-            ["SECOND_HALF_OVERTIME", "STOP", "END_GAME", "PENALTY magenta"],
-        ),  # after GAMEOVER, which nothing follows
+            ["RESET", "SECOND_HALF_OVERTIME", "STOP", "END_GAME", "PENALTY cyan", "GOAL cyan", "PENALTY magenta"],
+        ),  # after GAMEOVER, which only RESET follows
+        (
+            state(game_state_t.FROZEN, half=2, score_cyan=1),
+            state(game_state_t.KICK_OFF, 2, half=2, score_cyan=1),
+            ["RESET", "SECOND_HALF", "GOAL cyan", "KICKOFF magenta"],
+        ),
+        (
+            state(game_state_t.FROZEN, half=2, score_cyan=1),
+            state(game_state_t.FROZEN, half=2),
+            ["RESET", "SECOND_HALF", "STOP", "END_GAME"],
+        ),  # drawn by hand: overtime may follow
+        (
+            state(game_state_t.FROZEN, half=2),
+            state(game_state_t.FROZEN, half=2, score_cyan=1),
+            ["GOAL cyan", "GAMEOVER"],
+        ),  # decided by hand
+        (
+            state(game_state_t.FROZEN, half=2, score_cyan=1),
+            state(game_state_t.FROZEN, half=2, score_cyan=2),
+            ["GOAL cyan"],
+        ),
+        (PLAY, state(game_state_t.KICK_OFF, 2, half=2), ["STOP", "SECOND_HALF", "KICKOFF magenta"]),
+        (
+            PLAY,
+            state(game_state_t.PENALTY, 1, half=5),
+            ["STOP", "SECOND_HALF_OVERTIME", "STOP", "END_GAME", "PENALTY cyan"],
+        ),
         (
             state(game_state_t.THROW_IN, 1, half=2, time_in_half_s=9.0),
             state(game_state_t.KICK_OFF, 2, half=2),
@@ -266,3 +292,33 @@ def test_deciding_goal_taken_back_is_not_told_as_scored() -> None:
     now = state(game_state_t.PENALTY, 2, half=5, score_cyan=2, score_magenta=2, decisions=2)
     told = [command.name for command in news(None, now, [goal, taken_back])]
     assert told == ["SECOND_HALF_OVERTIME", *["GOAL"] * 4, "STOP", "END_GAME", "PENALTY"]
+
+
+def test_newcomer_after_the_penalties_is_told_of_them() -> None:
+    goals = [game_event_t(goal=True, half=5, team=team) for team in (1, 2, 2)]
+    ended = state(game_state_t.FROZEN, half=5, score_cyan=2, score_magenta=3, decisions=3)
+    told = news(None, ended, goals)
+    assert [f"{command.name} {command.team}".strip() for command in told] == [
+        *("SECOND_HALF_OVERTIME", "GOAL cyan", "GOAL magenta", "STOP", "END_GAME"),
+        *("PENALTY cyan", "GOAL cyan", *["PENALTY magenta", "GOAL magenta"] * 2),
+        *("STOP", "END_GAME", "GAMEOVER"),
+    ]
+    match = Script(automatic=False).whistle
+    assert [carry_out(match, Sight(match.spot), each.name.lower(), each.team) for each in told[:-1]] == [""] * 13
+    assert (match.half, match.state, match.score) == (5, State.FROZEN, {1: 2, 2: 3})
+
+
+def test_follower_goes_on_after_a_draw_by_hand() -> None:
+    """The match was decided; the goal is taken back, and the overtime follows."""
+    states = [
+        state(game_state_t.FROZEN, half=2, score_cyan=1),
+        state(game_state_t.FROZEN, half=2),
+        state(game_state_t.KICK_OFF, 1, half=3),
+    ]
+    match = Script(automatic=False).whistle
+    for before, now in zip([None, *states], states, strict=False):
+        for command in news(before, now):
+            name = "end_game" if command.name == "GAMEOVER" else command.name.lower()
+            assert carry_out(match, Sight(match.spot), name, command.team) == ""
+        score = match.score[Team.CYAN], match.score[Team.MAGENTA]
+        assert (match.state, match.half, score) == (now.state, now.half, (now.score_cyan, now.score_magenta))
