@@ -72,6 +72,7 @@ class RefBoxClient(Component):
         self._connection = Connection(self.clock, self.log)
         self._commands: list[Command] = []  # not handed on yet
         self._sent: list[tuple[Command, Sent]] = []
+        self._asked: set[str] = set()  # robots of the team that are to show that they are alive
         self._reported_us = 0  # when the newest report was due
 
     def loop(self) -> None:
@@ -83,6 +84,9 @@ class RefBoxClient(Component):
         messages = connection.messages() if len(self._commands) < _OPEN_MAX else []
         self._warn([f"RefBox: {mistake}" for message in messages if (mistake := self._take(message))])
         self._hand_on()
+        if self._asked:
+            self.log.info(f"the RefBox asks for signs of life: {', '.join(map(self._sign_of, sorted(self._asked)))}")
+            self._asked = set()
         if config.report_s and connection.ready and self.clock.since_s(self._reported_us) >= config.report_s:
             self._report()
 
@@ -102,9 +106,17 @@ class RefBoxClient(Component):
             command = decode(message, self.config.addresses.model_dump())
         except ProtocolError as error:
             return str(error)
+        if command.name == "IS_ALIVE" and command.team == self.config.team and command.robot:
+            self._asked.add(self._named(command))
         if self.config.obeys and command.name not in _IGNORED:
             self._commands.append(command)
         return ""
+
+    def _sign_of(self, robot: str) -> str:
+        """Returns when a robot told something last, for the log; the protocol has no answer to `IS_ALIVE`."""
+        if robot not in self.messages or not self.messages[robot].has_value:
+            return f"{robot} has told nothing"
+        return f"{robot} told something {self.clock.since_s(self.messages[robot].header.time_us):.1f} s ago"
 
     def _hand_on(self) -> None:
         """Hands on as many commands as may wait for the referee; the others follow in the next ticks."""

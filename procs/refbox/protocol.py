@@ -2,7 +2,8 @@
 
 `{"command": "KICKOFF", "targetTeam": "224.16.32.1"}`; a team is named by its multicast address, both teams by an empty
 text. `SUBSTITUTION` and `IS_ALIVE` have the number of a robot as `robotID`; cards and `REPAIR` need none. Base stations
-answer with world states (`world_state.py`).
+answer with world states (`world_state.py`). `IS_ALIVE`, by which a person asks a robot for a proof, has no other
+answer, and no part in the state of the game: a server that follows a referee does not send it.
 """
 
 import json

@@ -3,6 +3,7 @@
 import contextlib
 import json
 import math
+import re
 import socket
 from collections.abc import Iterator
 from typing import Any
@@ -350,3 +351,27 @@ def test_half_closed_station_makes_room_for_another() -> None:
             server.iterate()
             assert station.heard(1)[0]["command"] == "WELCOME"
     server.finalize()
+
+
+@pytest.mark.parametrize("obeys", [True, False])
+def test_signs_of_life_are_those_of_the_own_robots(refbox: socket.socket, obeys: bool) -> None:
+    names, port = ("cyan1", "cyan2", "magenta1"), refbox.getsockname()[1]
+    bench = Bench(RefBoxClient, "world/refbox", namespaces=names, port=port, obeys=obeys, report_s=0.0)
+    bench.iterate()
+    bench.port("messages", "cyan2").put(number=2)
+    connection, _ = refbox.accept()
+    with connection:
+        bench.iterate(20)  # at 20 Hz
+        asked = [("224.16.32.1", 3), ("224.16.32.2", 1), ("224.16.32.1", 2), ("224.16.32.1", 2), ("", 1)]
+        connection.sendall(b"".join(say("IS_ALIVE", team, robotID=number) for team, number in asked))
+        for _ in range(100):
+            bench.iterate()
+            if len(bench.logged) > 1:
+                break
+        bench.iterate(5)
+    bench.finalize()
+    (said,) = [line.text for line in bench.logged if "signs of life" in line.text]
+    assert re.fullmatch(
+        r"the RefBox asks for signs of life: cyan2 told something [1-6]\.\d s ago, cyan3 has told nothing", said
+    )
+    assert bench.port("referee_command").sent == []
