@@ -60,23 +60,23 @@ class Rules(BaseModel):
     """
     ends_s: NonNegativeFloat = 20.0
     """Longest such wait at the beginning of a half, when the robots may have changed ends."""
-    own_m: NonNegativeFloat = 2.0
+    own_m: float = Field(default=2.0, ge=0.0, le=10.0)
     """Least distance to the ball of the team that takes a set piece, except for the taker (2016: 2 m)."""
-    theirs_m: NonNegativeFloat = 3.0
+    theirs_m: float = Field(default=3.0, ge=0.0, le=10.0)
     """Least distance of the other team, except for one robot in its own penalty area (2016: 3 m)."""
-    dropped_m: NonNegativeFloat = 1.0
+    dropped_m: float = Field(default=1.0, ge=0.0, le=10.0)
     """Least distance of every robot at a dropped ball (2016: 1 m)."""
-    tolerance_m: NonNegativeFloat = 0.05
+    tolerance_m: float = Field(default=0.05, ge=0.0, le=2.0)
     """A set piece does not wait for a robot that is nearer, or further in the wrong half, by less than this."""
-    intrusion_m: NonNegativeFloat = 0.3
+    intrusion_m: float = Field(default=0.3, ge=0.0, le=2.0)
     """A robot may come nearer, or into the other half, by so much before the set piece is repeated."""
     repeats: NonNegativeInt = 2
     """A set piece is repeated so often after breaches; then the game goes on in spite of them."""
-    corner_inset_m: NonNegativeFloat = 0.2
+    corner_inset_m: float = Field(default=0.2, ge=0.0, le=2.0)
     """Distance of a corner kick's ball from both lines."""
-    throw_in_inset_m: NonNegativeFloat = 0.1
+    throw_in_inset_m: float = Field(default=0.1, ge=0.0, le=2.0)
     """Distance of a throw-in's ball from the touch line."""
-    free_kick_inset_m: NonNegativeFloat = 0.5
+    free_kick_inset_m: float = Field(default=0.5, ge=0.0, le=2.0)
     """Least distance of a free kick's ball from the touch lines."""
     set_piece_s: PositiveFloat = 7.0
     """Time for a set piece; after it the other team may play the ball, too (2016: 7 s)."""

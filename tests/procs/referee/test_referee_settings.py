@@ -24,7 +24,7 @@ CENTRE = Point(0.0, 0.0)
         (State.FREE_KICK, "magenta2", 2.5, {"theirs_m": 2.5}),
         (State.DROP_BALL, "cyan2", 0.5, {"dropped_m": 0.5}),
         (State.FREE_KICK, "magenta2", 2.5, {"tolerance_m": 0.6}),
-        (State.KICK_OFF, "cyan2", 3.5, {"tolerance_m": 3.6}),
+        (State.KICK_OFF, "cyan2", 1.5, {"tolerance_m": 1.6}),
     ],
 )
 def test_places_that_robots_keep_are_settings(state: State, robot: str, x_m: float, nearer: dict[str, float]) -> None:
