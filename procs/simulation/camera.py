@@ -16,7 +16,7 @@ from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.sensor_noise import SensorNoise
 from procs.simulation.rendering.shapes import Bodies
 from procs.vision.calibration import MirrorConfig, below_mirror
-from procs.vision.colours import BLACK, COLOURS
+from procs.vision.colours import BLACK, COLOURS, Picture
 
 
 class CameraConfig(CameraSettings):
@@ -28,6 +28,9 @@ class CameraConfig(CameraSettings):
     """Uncalibrated tilt of the mirror about the robot's x axis, besides that of the preset."""
     pitch_deg: float = Setting(default=0.0, ge=-5.0, le=5.0)
     """Uncalibrated tilt of the mirror about the robot's y axis, besides that of the preset."""
+
+    frozen: bool = False
+    """The camera hangs: it repeats the picture at hand as if it were new."""
 
     _visible = field_validator("ball")(below_mirror)
 
@@ -57,15 +60,19 @@ class Camera(Component):
         built, interrupted = self.rng.spawn(2)
         self._tilts, self._casts = built.standard_normal(2), built.standard_normal(3)
         self._gaps = Gaps(interrupted)
+        self._frozen: Picture | None = None
         self._apply_settings()
 
     def loop(self) -> None:
         seen = self._delayed.expose(self.ground_truth, self._errors.latency_s)
         if seen and not self._gaps.blind(self.clock.now_us, self._errors.gaps_1_min, self._errors.gap_s):
-            frame = self._renderer.render(self._scene(seen), self._errors.drawn_shake_px(seen.own, self.rng))
-            self.image.publish(self._noise.apply(frame, self.rng), seen.capture_us)
+            picture = self._picture(seen) if self._frozen is None else self._frozen
+            self._frozen = picture if self.config.frozen else None
+            self.image.publish(picture, seen.capture_us)
 
     def config_changed(self) -> None:
+        if not self.config.frozen:
+            self._frozen = None
         self._apply_settings()
 
     def _apply_settings(self) -> None:
@@ -84,6 +91,10 @@ class Camera(Component):
             vignette=errors.vignette,
             cast=(blue, green, red),
         )
+
+    def _picture(self, seen: Exposure) -> Picture:
+        frame = self._renderer.render(self._scene(seen), self._errors.drawn_shake_px(seen.own, self.rng))
+        return self._noise.apply(frame, self.rng)
 
     def _scene(self, seen: Exposure) -> Scene:
         # A robot that is not a player has no marker: a black one on a black body.

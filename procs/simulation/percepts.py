@@ -23,7 +23,7 @@ from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
 from procs.model.robot import ROBOT, TEAM_NUMBERS, RobotModel, team_in
 from procs.simulation.ball_sight import BallSight, candidate
-from procs.simulation.delayed_truth import DelayedTruth
+from procs.simulation.delayed_truth import DelayedTruth, Exposure
 from procs.simulation.gaps import Gaps
 from procs.simulation.line_scan import line_scan
 from procs.simulation.percept_errors import PRESETS
@@ -76,6 +76,8 @@ class PerceptsConfig(Config):
     """Interruptions in a minute, in which frames are lost in a row."""
     gap_s: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Mean duration of an interruption."""
+    frozen: bool = False
+    """The camera hangs: what its last picture shows comes again as if it were new."""
     field: Field = Field()
     """Measures of the field."""
     robot: RobotModel = ROBOT
@@ -132,6 +134,7 @@ class Percepts(Component):
     def init(self) -> None:
         self._delayed = DelayedTruth(self.name, "percepts", self.log)
         self._before_us = -1
+        self._looked = False
         built, interrupted, self._mouth_rng, self._marker_rng = self.rng.spawn(4)
         self._tilts = built.standard_normal(2)
         self._gaps = Gaps(interrupted)
@@ -145,14 +148,8 @@ class Percepts(Component):
         self._before_us = self.clock.now_us
         if seen is None or self._gaps.blind(self.clock.now_us, self._errors.gaps_1_min, self._errors.gap_s):
             return
-        own = seen.own
-        shake_px = self._errors.drawn_shake_px(own, self.rng)
-        others = [(robot.x_m, robot.y_m) for robot in seen.others]
-        robots_m = _seen_from(own, np.array(others).reshape(-1, 2))
-        self._see_ball(own, seen.truth, robots_m, shake_px, passed_s)
-        teams = [TEAM_NUMBERS.get(team_in(robot), obstacle_t.TEAM_UNKNOWN) for robot in seen.others]
-        self._see_robots(robots_m, teams, shake_px, passed_s)
-        self._see_lines(own, robots_m, shake_px)
+        if not (self.config.frozen and self._looked):
+            self._look(seen, passed_s)
         for port in (self.ball_percept, self.obstacle_percepts, self.line_points):
             port.value.capture_us = seen.capture_us
             port.write()
@@ -183,6 +180,17 @@ class Percepts(Component):
             self._stated.ball_px,
         )
         self._lines = line_scan(self.config.field)
+
+    def _look(self, seen: Exposure, passed_s: float) -> None:
+        """Draws all percepts of a frame, `passed_s` after the last one."""
+        self._looked, own = True, seen.own
+        shake_px = self._errors.drawn_shake_px(own, self.rng)
+        others = [(robot.x_m, robot.y_m) for robot in seen.others]
+        robots_m = _seen_from(own, np.array(others).reshape(-1, 2))
+        self._see_ball(own, seen.truth, robots_m, shake_px, passed_s)
+        teams = [TEAM_NUMBERS.get(team_in(robot), obstacle_t.TEAM_UNKNOWN) for robot in seen.others]
+        self._see_robots(robots_m, teams, shake_px, passed_s)
+        self._see_lines(own, robots_m, shake_px)
 
     def _see_ball(
         self, own: true_robot_t, truth: ground_truth_t, robots_m: Floats, shake_px: tuple[float, float], passed_s: float
