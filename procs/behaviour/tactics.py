@@ -12,7 +12,7 @@ from procs.behaviour.passing import Passing
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER, Job
 from procs.behaviour.skills.getting import HELD_M, comes_fast
 from procs.behaviour.skills.keeping import BEFORE_LINE_M
-from procs.behaviour.view import Robot, View
+from procs.behaviour.view import Ball, Robot, View
 from procs.model.field import Field, Point
 from procs.model.game_states import State
 from procs.model.geometry import ahead, bearing_rad, clamp
@@ -37,6 +37,7 @@ _FUMBLED_M = 0.4  # the ball of a set piece that is so far from its spot has bee
 _NEAR_M = 1.0  # the taker this near to such a ball has taken it itself
 _LEAVING_M, _GENTLE_M_S = 1.5, 1.0  # while a rival is so near to the ball, the taker comes so slowly
 _BLOCKED_S = 0.4  # a rival that drives past does not change the plan of a set piece
+_RESTS_M_S = 0.3  # a faster ball has been pushed off its spot
 _BESIDE_M = (0.2, 0.8)  # a ball laid less far from the spot lies on it; one further away is put back
 _STOPS_M_S2 = 2.8  # deceleration of a goalkeeper that drives home
 _HOME_M = 1.0  # a goalkeeper this near to its penalty area goes straight home, even at a set piece
@@ -59,6 +60,7 @@ class Tactics:
         """Agreement on a pass, for the messages to the team."""
         self._play = BallPlay(field, self.passing)
         self._laid: Point | None = None  # place of the ball of the set piece at hand
+        self._laid_for = -1  # number of that set piece
         self._taking = False  # the ball in the mouth is that of the own set piece
         self._penalty = False  # that set piece is a penalty
         self._moved = False  # another robot has moved the ball of the set piece at hand
@@ -84,8 +86,7 @@ class Tactics:
         self._held_s = self._held_s + duration_s if holds_ball else 0.0
         holds_ball = self._held_s >= _SETTLED_S
         self._play.watch(view, holds_ball, duration_s)
-        if game.stopped:
-            self._laid, self._moved = view.ball.place if view.ball.known else None, False
+        self._note_laid(view.ball, game)
         game = self._as_laid(game)
         self._barred_s = self._still_barred_s(view, game, holds_ball) - duration_s
         passed = self._last.intention == "pass" and not holds_ball and view.ball.speed_m_s > _PASSED_M_S
@@ -102,6 +103,17 @@ class Tactics:
         if stops or lost or self._last.skill in ("shoot", "lob", "push", "clear"):
             self.passing.announce("")
         return self._last
+
+    def _note_laid(self, ball: Ball, game: Game) -> None:
+        """Notes where the ball of the set piece at hand lies; a robot may push it, and the crew puts it back."""
+        if game.stopped:
+            self._moved = False
+        rests, laid = ball.known and ball.speed_m_s < _RESTS_M_S, self._laid
+        if game.stopped and (not ball.known or laid is None or game.number != self._laid_for):
+            self._laid = ball.place if ball.known else None
+        elif rests and (game.stopped or (laid and math.dist(ball.place, game.spot) < math.dist(laid, game.spot))):
+            self._laid = ball.place
+        self._laid_for = game.number
 
     def _as_laid(self, game: Game) -> Game:
         """Returns the game with the set piece where its ball lies: a robot may have stood on the spot."""

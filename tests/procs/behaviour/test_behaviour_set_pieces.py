@@ -108,6 +108,21 @@ def test_taker_tells_a_receiver_out_of_a_passes_reach(supporter: Point) -> None:
     assert (said.receiver, said.place) == ("cyan3", chosen[1])
 
 
+@pytest.mark.parametrize("stops_at_m", [0.3, 0.7])
+def test_rival_keeps_off_the_spot_while_the_ball_is_pushed(stops_at_m: float) -> None:
+    """The ball rolls off its spot in the stoppage, and lies there again when the set piece may be taken."""
+    game = Game(State.THROW_IN, stopped=True, whose=Whose.THEIRS, spot=Point(3.5, 6.9), number=4)
+    tactics, own = Tactics(FIELD), robot("cyan2", 5.5, 4.6)
+    decided = [tactics.decide(view(own, ball(3.5, 6.9)), game, job(ATTACKER), False, 0.05).place]
+    for step in range(15):
+        away_m, speed_m_s = min(0.05 * step, stops_at_m), 1.0 if 0.05 * step < stops_at_m else 0.0
+        seen = view(own, ball(3.5 - away_m, 6.9, -speed_m_s))
+        decided.append(tactics.decide(seen, game, job(ATTACKER), False, 0.05).place)
+    back = tactics.decide(view(own, ball(3.5, 6.9)), game._replace(stopped=False), job(ATTACKER), False, 0.05)
+    assert back.place == decided[0]
+    assert all(math.dist(place, decided[0]) < 0.01 for place in decided[: round(stops_at_m / 0.05)])
+
+
 def test_taker_draws_the_variant_of_each_set_piece() -> None:
     tactics, said = Tactics(FIELD, np.random.default_rng(1)), []
     seen = view(robot("cyan2", 0.7, 0.0, math.pi), ball(0.0, 0.0), (robot("cyan3", -2.0, 1.5, role=SUPPORTER),))
