@@ -23,6 +23,7 @@ from procs.model.kinematics import STANDSTILL, Velocity
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel, number_of_player
 from procs.model.teams import team_number_of_player
 
+_BALL_M = 0.15  # between a robot and a ball that it avoids
 _FORWARD = 0.8  # cosine of the largest angle between a change of velocity towards the ball and the heading
 
 
@@ -147,7 +148,7 @@ class Navigator(Component):
         # Where the wall keeps a robot from turning, its wheels report a turn all the same, and the robot loses its way.
         at_wall = obstacles.touches_wall(Point(model.x_m, model.y_m), config.field, self._bodies)
         wanted = self._velocity(target, way, 0.0 if at_wall else turn_rad)
-        allowed = partial(self._outside, circle, pose.place)
+        allowed = partial(self._outside, [*circle, *self._ball(target, model)], pose.place)
         wanted = Velocity(*allowed(Point(wanted.vx_m_s, wanted.vy_m_s)), wanted.omega_rad_s)
         if target.avoid_robots:
             wanted = self._give_way(wanted, pose.place, model, allowed)
@@ -166,9 +167,16 @@ class Navigator(Component):
         sent_in = circle is not None and math.dist(place, circle.middle) <= circle.radius_m
         return [] if circle is None or sent_in or self._holds_ball else [circle]
 
-    def _outside(self, circle: Sequence[Disc], place: Point, velocity_m_s: Point) -> Point:
-        """Returns the velocity, limited to what keeps the robot out of the circle."""
-        for disc in circle:
+    def _ball(self, target: drive_target_t, model: world_model_t) -> list[Disc]:
+        """Returns the room that a robot leaves to a ball that it avoids."""
+        ball = model.ball
+        if not (target.avoid_ball and ball.known and plausible(ball.x_m, ball.y_m)):
+            return []
+        return [Disc(Point(ball.x_m, ball.y_m), self._bodies.beside_m + _BALL_M)]
+
+    def _outside(self, discs: Sequence[Disc], place: Point, velocity_m_s: Point) -> Point:
+        """Returns the velocity, limited to what keeps the robot out of the discs."""
+        for disc in discs:
             velocity_m_s = obstacles.braked_at_disc(velocity_m_s, place, disc, self.config.limits)
         return velocity_m_s
 

@@ -8,7 +8,7 @@ import pytest
 
 from fwk.testing import Bench
 from lcmtypes.robot import motor_command_t
-from lcmtypes.soccer import game_state_t, mate_estimate_t, navigator_state_t, robot_estimate_t
+from lcmtypes.soccer import ball_estimate_t, game_state_t, mate_estimate_t, navigator_state_t, robot_estimate_t
 from procs.behaviour.navigator import Navigator
 from procs.model.field import Point
 from tests.procs.behaviour.behaviour_parts import moved, newest, put
@@ -250,3 +250,21 @@ def test_robot_that_evades_stays_outside_the_circle(team: int, least_m: float) -
 
 def test_taker_is_sent_into_the_circle() -> None:
     assert at_set_piece(game_state_t.TEAM_CYAN, 3.0, 0.75, rival_x_m=20.0, ticks=80) == pytest.approx(0.75, abs=0.1)
+
+
+def test_robot_sent_to_the_other_side_of_a_ball_does_not_push_it() -> None:
+    """On its way to a place beside the ball it gets one on the ball's other side."""
+    bench = Bench(Navigator, "cyan2/navigator")
+    place, heading_rad, nearest_m = Point(-2.5, 1.8), 0.0, 9.0
+    command, *waiting = (motor_command_t() for _ in range(3))
+    for tick in range(60):
+        put(bench, "world_model", localized=True, x_m=place.x_m, y_m=place.y_m, ball=ball_estimate_t(known=True))
+        put(bench, "odometry", vx_m_s=command.vx_m_s, vy_m_s=command.vy_m_s)
+        put(bench, "drive_target", x_m=-0.27, y_m=0.7 if tick < 28 else -0.7, avoid_ball=True)
+        bench.iterate()
+        waiting.append(newest(bench, "motor_command"))
+        command = waiting.pop(0)
+        place, heading_rad = moved(place, heading_rad, command)
+        nearest_m = min(nearest_m, math.hypot(*place))
+    assert nearest_m > 0.38
+    assert math.dist(place, (-0.27, -0.7)) < 0.3
