@@ -122,11 +122,11 @@ def test_fwk_call_refuses_a_component_that_is_stopped(launch: Launch, folder: Pa
 
 def test_fwk_call_waits_for_a_component_that_restarts(launch: Launch, folder: Path, ports: PortBlock) -> None:
     file = folder / "launch/lift.yaml"
-    file.write_text(file.read_text().replace('Lifter" }', 'Lifter", restart: { backoff_s: 2.0 } }'))
+    file.write_text(file.read_text().replace('Lifter" }', 'Lifter", restart: { backoff_s: 8.0 } }'))
     run = started(launch, ports)
     os.kill(run.launched.host("r/lifter"), signal.SIGKILL)
     run.launched.until_true(lambda: run.json("status", "r/lifter")["components"][0]["state"] == "waiting", "its death")
-    said = run.fwk("call", "r/lift", "height_m=1", code=1)
+    said = run.fwk("call", "r/lift", "height_m=1", "--timeout", "100", code=1)
     assert "r/lifter was started after it had been sent" in said
     run.end()
 
