@@ -18,8 +18,9 @@ PASSER = "passer"
 """Took a set piece and may not touch the ball before another robot has."""
 ROLLS_M_S = 0.6
 """The nearest robot takes a slower ball, whatever was agreed."""
+HAS_BALL_M = 0.09
+"""Beside its body a robot has the ball."""
 
-_HAS_BALL_M = 0.09  # beside its body a robot has the ball
 _STAY_S = 0.6  # an attacker keeps its role unless another is so much faster at the ball
 _STAY_PRESSING_S = 0.3  # a second attacker stays until the team is so much sooner at the ball
 _STAY_M = 1.0  # a robot keeps its role in the formation unless a change saves this much distance
@@ -105,7 +106,7 @@ def receiver(team: Sequence[Robot], view: View) -> Robot | None:
 def time_to_ball_s(robot: Robot, ball: Ball, course: ballistics.Course) -> float:
     """Returns the time in which a robot meets the ball; 0 for one that has it."""
     # A dribbling robot takes the ball along; a mate ahead of the ball would seem to meet it sooner.
-    if math.dist(robot.place, ball.place) < course.bodies.beside_m + _HAS_BALL_M:
+    if math.dist(robot.place, ball.place) < course.bodies.beside_m + HAS_BALL_M:
         return 0.0
     return course.meet(robot.place, robot.velocity_m_s).time_s
 

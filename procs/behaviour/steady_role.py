@@ -1,13 +1,12 @@
 """Steadiness of a robot's role: with each touch of a contested ball another robot is the first to meet it."""
 
-from procs.behaviour.roles import ATTACKER, DEFENDER, SUPPORTER, Job
+from procs.behaviour.roles import ATTACKER, DEFENDER, HAS_BALL_M, SUPPORTER, Job
 from procs.behaviour.view import View
 from procs.model.field import Point
 
 _SETTLES_S = 0.3
 """A role of the field is taken once it has been assigned for so long without a break."""
-_AT_BALL_M = 0.09  # a robot with the ball so near to its body attacks at once
-_FIELD_ROLES = (ATTACKER, SUPPORTER, DEFENDER)
+_FIELD_ROLES = {ATTACKER, SUPPORTER, DEFENDER}
 
 
 class SteadyRole:
@@ -19,10 +18,10 @@ class SteadyRole:
 
     def job(self, assigned: Job, view: View, free_play: bool, duration_s: float) -> Job:
         """Returns the job in this tick, `duration_s` after the last; that of the last role while another settles."""
-        self._other_s = self._other_s + duration_s if assigned.role != self._kept.role else 0.0
-        roles = {assigned.role, self._kept.role}
-        settles = free_play and roles <= set(_FIELD_ROLES) and self._other_s < _SETTLES_S
-        if len(roles) == 1 or not settles or _urgent(assigned, view):
+        same = assigned.role == self._kept.role
+        self._other_s = 0.0 if same else self._other_s + duration_s
+        waits = free_play and _FIELD_ROLES.issuperset((assigned.role, self._kept.role)) and self._other_s < _SETTLES_S
+        if same or not waits or _urgent(assigned, view):
             self._kept, self._other_s = assigned, 0.0
         elif self._kept.role == ATTACKER:
             self._kept = Job(ATTACKER, view.ball.place)
@@ -30,8 +29,8 @@ class SteadyRole:
 
 
 def _urgent(assigned: Job, view: View) -> bool:
-    """Returns whether the robot has to attack at once: nobody else does, a pass comes to it, or it is at the ball."""
+    """Returns whether the robot has to attack at once: as the only one, as receiver of a pass, or with the ball."""
     if assigned.role != ATTACKER:
         return False
     alone = all(mate.role != ATTACKER for mate in view.mates)
-    return alone or bool(view.own.agreement.passer) or view.is_at_ball((view.own,), _AT_BALL_M)
+    return alone or bool(view.own.agreement.passer) or view.is_at_ball((view.own,), HAS_BALL_M)

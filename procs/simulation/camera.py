@@ -66,13 +66,12 @@ class Camera(Component):
     def loop(self) -> None:
         seen = self._delayed.expose(self.ground_truth, self._errors.latency_s)
         if seen and not self._gaps.blind(self.clock.now_us, self._errors.gaps_1_min, self._errors.gap_s):
-            picture = self._picture(seen) if self._frozen is None else self._frozen
+            repeated = self._frozen if self.config.frozen else None
+            picture = self._picture(seen) if repeated is None else repeated
             self._frozen = picture if self.config.frozen else None
             self.image.publish(picture, seen.capture_us)
 
     def config_changed(self) -> None:
-        if not self.config.frozen:
-            self._frozen = None
         self._apply_settings()
 
     def _apply_settings(self) -> None:
@@ -82,15 +81,7 @@ class Camera(Component):
         mirror = config.mirror.mirror(config.roll_deg + roll_deg, config.pitch_deg + pitch_deg)
         self._renderer = Renderer(mirror, config.field, Bodies.of(config.robot, config.ball), config.wear)
         blue, green, red = (1.0 + errors.cast * self._casts).tolist()
-        self._noise = SensorNoise(
-            (mirror.size_px, mirror.size_px, 3),
-            errors.noise_levels,
-            config.brightness,
-            errors.flicker,
-            blur_px=errors.blur_px,
-            vignette=errors.vignette,
-            cast=(blue, green, red),
-        )
+        self._noise = config.noise((mirror.size_px, mirror.size_px, 3), (blue, green, red))
 
     def _picture(self, seen: Exposure) -> Picture:
         frame = self._renderer.render(self._scene(seen), self._errors.drawn_shake_px(seen.own, self.rng))

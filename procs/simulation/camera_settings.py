@@ -9,6 +9,7 @@ from procs.model.realism import Realism, chosen
 from procs.model.robot import ROBOT, RobotModel
 from procs.simulation.camera_errors import PRESETS, CameraErrors
 from procs.simulation.rendering.carpet import Wear
+from procs.simulation.rendering.sensor_noise import SensorNoise
 
 
 class CameraSettings(Config):
@@ -60,6 +61,19 @@ class CameraSettings(Config):
     def errors(self) -> CameraErrors:
         """Errors of the preset and those that override them."""
         return chosen(PRESETS[self.realism], self)
+
+    def noise(self, shape: tuple[int, ...], cast: tuple[float, ...]) -> SensorNoise:
+        """Returns what lens and sensor do to pictures of a shape, with a colour cast; see `SensorNoise`."""
+        errors = self.errors
+        return SensorNoise(
+            shape,
+            errors.noise_levels,
+            self.brightness,
+            errors.flicker,
+            blur_px=errors.blur_px,
+            vignette=errors.vignette,
+            cast=cast,
+        )
 
     @property
     def wear(self) -> Wear:

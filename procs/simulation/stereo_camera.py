@@ -11,7 +11,6 @@ from procs.simulation.camera_settings import CameraSettings
 from procs.simulation.delayed_truth import DelayedTruth
 from procs.simulation.gaps import Gaps
 from procs.simulation.rendering.renderer import Pose
-from procs.simulation.rendering.sensor_noise import SensorNoise
 from procs.simulation.rendering.shapes import Bodies
 from procs.simulation.rendering.stereo_renderer import StereoRenderer
 from procs.vision.stereo_rig import StereoRig
@@ -62,15 +61,5 @@ class StereoCamera(Component):
         roll_rad, pitch_rad = (math.radians(errors.tilt_sd_deg) * self._tilts).tolist()
         bodies = Bodies.of(config.robot, config.ball)
         self._renderer = StereoRenderer(config.rig, config.field, bodies, config.wear, (roll_rad, pitch_rad))
-        self._noises = [
-            SensorNoise(
-                (config.rig.height_px, config.rig.width_px),
-                errors.noise_levels,
-                config.brightness,
-                errors.flicker,
-                blur_px=errors.blur_px,
-                vignette=errors.vignette,
-                cast=(factor,),
-            )
-            for factor in (1.0 + errors.cast * self._casts).tolist()
-        ]
+        casts = (1.0 + errors.cast * self._casts).tolist()
+        self._noises = [config.noise((config.rig.height_px, config.rig.width_px), (cast,)) for cast in casts]
