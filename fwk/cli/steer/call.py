@@ -68,7 +68,7 @@ def _called(
     """Returns the last answer; after the time-out, the last one until then, with `timed_out`."""
     with runs.gateway(chosen) as gateway:
         data = _encoded(gateway, name, fields, chosen)
-        _check_owner(name, chosen)
+        _check_owner(gateway, name, chosen)
         last: dict[str, Any] = {}
         for answer in gateway.follow("call", timeout_s, True, name=name, data=data.hex(), expires_s=expires_s):
             last = {"reply": {}, "reason": "", **answer, "timed_out": False}
@@ -77,13 +77,13 @@ def _called(
     return {**last, "timed_out": True, "owner": _owner(name, chosen)}
 
 
-def _check_owner(name: str, chosen: str | None) -> None:
+def _check_owner(gateway: Client, name: str, chosen: str | None) -> None:
     """Checks that the component that carries the commands out has a process, or gets one without being told.
 
     Raises:
         ControlError: the component was not started, was stopped, or has failed for good.
     """
-    component = _owner_status(name, chosen)["components"][0]
+    component = _owner_status(gateway, name, chosen)["components"][0]
     if component["state"] in _ENDED and not component["pid"]:
         remedy = "" if "'fwk " in component["reason"] else f"; 'fwk start {component['name']}' starts it"
         raise ControlError(f"{name}: not sent, because {_state(component)}{remedy}")
@@ -91,15 +91,15 @@ def _check_owner(name: str, chosen: str | None) -> None:
 
 def _owner(name: str, chosen: str | None) -> str:
     """Returns the component that carries the commands out, with its state, and whether the run is paused."""
-    status = _owner_status(name, chosen)
+    with runs.gateway(chosen) as gateway:
+        status = _owner_status(gateway, name, chosen)
     paused = f", but the run is paused after tick {status['tick']}; 'fwk resume' goes on" if status["paused"] else ""
     return _state(status["components"][0]) + paused
 
 
-def _owner_status(name: str, chosen: str | None) -> dict[str, Any]:
+def _owner_status(gateway: Client, name: str, chosen: str | None) -> dict[str, Any]:
     """Returns the status of the run with that of the component that carries the commands out."""
-    with runs.gateway(chosen) as gateway:
-        rows = gateway.ask("channels")["channels"]
+    rows = gateway.ask("channels")["channels"]
     owner = next(row["writer"] for row in rows if row["channel"] == service_channel(name, ANSWERS))
     return ask(chosen, "status", names=[owner])
 
