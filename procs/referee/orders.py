@@ -24,6 +24,8 @@ OF_ROBOT = (*CARDS, *REPAIRS)
 """Commands that name a robot."""
 GOALS = ("goal", "subgoal")
 """`subgoal` takes a goal back."""
+OF_TEAM = (*SET_PIECES, *GOALS, *OF_ROBOT)
+"""Commands that name a team."""
 PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game", "reset")
 """Commands without a team or a robot."""
 HALVES = {
@@ -54,6 +56,8 @@ def mistake_in(name: str, team: str, robot: str, robots: Collection[str], names:
         return f"no team '{team}'; {right_name(team, filter(None, TEAMS))}"
     if name in (*SET_PIECES, *GOALS) and not team:
         return f"'{name}' needs a team: cyan or magenta"
+    if team and name not in OF_TEAM:
+        return f"'{name}' takes no team, so not {team}; commands with a team are {', '.join(OF_TEAM)}"
     if robot and name not in OF_ROBOT:
         return f"'{name}' takes no robot, so not {robot}; commands with a robot are {', '.join(OF_ROBOT)}"
     if name in OF_ROBOT:

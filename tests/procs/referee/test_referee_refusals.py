@@ -42,7 +42,7 @@ def counted(script: Script) -> tuple[list[int], list[int]]:
 @pytest.mark.parametrize("command", [*SET_PIECES, "drop_ball", "half_time"])
 def test_no_set_piece_after_the_end(command: str) -> None:
     script = ended()
-    reason = ask(script, command, "cyan")
+    reason = ask(script, command, "cyan" if command in SET_PIECES else "")
     assert reason.startswith("no ")
     assert reason.endswith(" after the end of the match; reset begins another match")
     assert script.state == (State.FROZEN, 0, True)
@@ -51,7 +51,7 @@ def test_no_set_piece_after_the_end(command: str) -> None:
 @pytest.mark.parametrize("command", [*SET_PIECES[1:], "drop_ball", "half_time"])
 def test_only_the_kick_off_in_a_break(command: str) -> None:
     script = in_break()
-    reason = ask(script, command, "cyan")
+    reason = ask(script, command, "cyan" if command in SET_PIECES else "")
     assert reason.startswith("no ")
     assert reason.endswith(" in a break; second_half begins the next half")
     assert script.state == (State.HALF_TIME, 0, True)
@@ -221,14 +221,14 @@ def test_kick_off_in_a_break_prepares_the_next_half(team: Team) -> None:
     assert script.state == (State.KICK_OFF, MAGENTA, True), "once begun, it begins anew as usual"
 
 
-@pytest.mark.parametrize("command", ["second_half", "kickoff"])
-def test_stop_holds_a_break_until_the_next_half(command: str) -> None:
+@pytest.mark.parametrize(("command", "team"), [("second_half", ""), ("kickoff", "cyan")])
+def test_stop_holds_a_break_until_the_next_half(command: str, team: str) -> None:
     script = Script(half_time_s=1.0).playing()
     for name in ("stop", "half_time", "stop"):
         ask(script, name)
     script.wait(3.0)
     assert script.state == (State.HALF_TIME, 0, True)
-    assert ask(script, command, "cyan") == ""
+    assert ask(script, command, team) == ""
     assert script.started().whistle.half == 2
 
 
@@ -299,5 +299,15 @@ def test_robot_of_a_command_without_one_is_refused(command: str) -> None:
     assert carry_out(script.whistle, Sight(script.ball, robots=script.robots), command, team, "cyan2") == (
         f"'{command}' takes no robot, so not cyan2; "
         "commands with a robot are yellow_card, double_yellow, red_card, repair, substitution"
+    )
+    assert (script.state, script.score) == (before, (0, 0))
+
+
+@pytest.mark.parametrize("command", ["start", "stop", "drop_ball", "half_time", "second_half", "penalties", "reset"])
+def test_team_of_a_command_without_one_is_refused(command: str) -> None:
+    script = Script().playing()
+    before = script.state
+    assert ask(script, command, "magenta").startswith(
+        f"'{command}' takes no team, so not magenta; commands with a team are kickoff, freekick,"
     )
     assert (script.state, script.score) == (before, (0, 0))
