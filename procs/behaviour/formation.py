@@ -48,8 +48,8 @@ def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
     on its flank: -1 or 1.
     """
     goal, (along, across) = field.goal_centre(-1.0), scale(field)
-    back_m = _before_area_m(field, _BACK_M)
-    shooter_m, shooter_aside_m = _before_area_m(field, _SHOOTER_M), _SHOOTER_Y_M * across
+    back_m = before_area_m(field, _BACK_M)
+    shooter_m, shooter_aside_m = before_area_m(field, _SHOOTER_M), _SHOOTER_Y_M * across
     if ours:
         x_m = clamp(ball.x_m + 3.0 * along, -5.0 * along, shooter_m)
         aside_m = shooter_aside_m if x_m > 3.0 * along else 5.0 * across  # near the goal its mouth has to look wide
@@ -84,7 +84,7 @@ def further_places(count: int, others: Sequence[Point], ball: Point, flank: floa
     They are in rows behind the ball, on both flanks in turn.
     """
     along, across = scale(field)
-    back_m, widest_m = _before_area_m(field, _BACK_M), field.half_width_m - _TOUCH_LINE_M
+    back_m, widest_m = before_area_m(field, _BACK_M), field.half_width_m - _TOUCH_LINE_M
     taken, found = [*others, ball], []
     for row in range(count):
         flank = -flank
@@ -118,7 +118,7 @@ def scale(field: Field) -> tuple[float, float]:
     return field.length_m / _LENGTH_M, field.width_m / _WIDTH_M
 
 
-def _before_area_m(field: Field, distance_m: float) -> float:
+def before_area_m(field: Field, distance_m: float) -> float:
     """Returns how far from the halfway line a place before a penalty area is."""
     return field.half_length_m - (field.penalty_area_depth_m + distance_m)
 

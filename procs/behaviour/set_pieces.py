@@ -17,13 +17,13 @@ from procs.model.field import Field, Point
 from procs.model.game_states import State
 from procs.model.geometry import clamp
 
-_WIDTH_M = 14.0  # of the field for which distances across it are; they become larger or smaller with the field
+_CUT_BACK_M = 1.35  # before the opponents' penalty area
 _INSIDE_M = 0.8  # receivers wait so far inside the touch lines
 _FREE_M = 1.5  # and so far from rivals
 
 
 class Variant(NamedTuple):
-    """One way to take a set piece."""
+    """One way to take a set piece; its place becomes further or nearer with the field, as those of formations do."""
 
     name: str
     place: Callable[[Game, Field], Point]
@@ -37,47 +37,56 @@ def lay_off(game: Game, field: Field) -> Point:
 
 def square(game: Game, field: Field) -> Point:
     """Level with the ball, on the side of the middle."""
-    return _inside(Point(game.spot.x_m, game.spot.y_m - _away(game) * 3.2), field)
+    _, across = formation.scale(field)
+    return _inside(Point(game.spot.x_m, game.spot.y_m - _away(game) * 3.2 * across), field)
 
 
 def ahead_on_the_wing(game: Game, field: Field) -> Point:
     """Ahead along the touch line."""
-    return _inside(Point(game.spot.x_m + 3.5, game.spot.y_m), field)
+    along, _ = formation.scale(field)
+    return _inside(Point(game.spot.x_m + 3.5 * along, game.spot.y_m), field)
 
 
 def long_to_the_wing(game: Game, field: Field) -> Point:
     """Far ahead, on the other side of the field."""
-    return _inside(Point(game.spot.x_m + 5.5, -_away(game) * 3.0 * (field.width_m / _WIDTH_M)), field)
+    along, across = formation.scale(field)
+    return _inside(Point(game.spot.x_m + 5.5 * along, -_away(game) * 3.0 * across), field)
 
 
-def back_left(_game: Game, _field: Field) -> Point:
+def back_left(_game: Game, field: Field) -> Point:
     """Behind the centre mark, a little to the left."""
-    return Point(-2.2, 1.0)
+    along, across = formation.scale(field)
+    return Point(-2.2 * along, 1.0 * across)
 
 
-def back_right(_game: Game, _field: Field) -> Point:
+def back_right(_game: Game, field: Field) -> Point:
     """Behind the centre mark, a little to the right."""
-    return Point(-2.2, -1.0)
+    along, across = formation.scale(field)
+    return Point(-2.2 * along, -1.0 * across)
 
 
 def wide_left(_game: Game, field: Field) -> Point:
     """Beside the centre mark, on the left wing of the own half."""
-    return Point(-0.7, 4.5 * (field.width_m / _WIDTH_M))
+    along, across = formation.scale(field)
+    return Point(-0.7 * along, 4.5 * across)
 
 
 def wide_right(_game: Game, field: Field) -> Point:
     """Beside the centre mark, on the right wing of the own half."""
-    return Point(-0.7, -4.5 * (field.width_m / _WIDTH_M))
+    along, across = formation.scale(field)
+    return Point(-0.7 * along, -4.5 * across)
 
 
 def cut_back(game: Game, field: Field) -> Point:
     """Before the penalty area, on the corner's side of the goal."""
-    return Point(field.half_length_m - 3.6, _away(game) * 2.2)
+    _, across = formation.scale(field)
+    return Point(formation.before_area_m(field, _CUT_BACK_M), _away(game) * 2.2 * across)
 
 
 def short(game: Game, field: Field) -> Point:
     """Near the corner, back along the touch line."""
-    return _inside(Point(game.spot.x_m - 3.0, game.spot.y_m), field)
+    along, _ = formation.scale(field)
+    return _inside(Point(game.spot.x_m - 3.0 * along, game.spot.y_m), field)
 
 
 BOOK: Mapping[State, Sequence[Variant]] = {

@@ -10,10 +10,21 @@ from procs.behaviour.bodies import USUAL
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.posts import posts
 from procs.behaviour.roles import ATTACKER, GOALKEEPER, SUPPORTER, Job
-from procs.behaviour.set_pieces import BOOK
+from procs.behaviour.set_pieces import (
+    BOOK,
+    ahead_on_the_wing,
+    back_left,
+    back_right,
+    cut_back,
+    long_to_the_wing,
+    short,
+    square,
+    wide_left,
+    wide_right,
+)
 from procs.behaviour.tactics import Tactics
 from procs.behaviour.view import Agreement, View
-from procs.model.field import Point
+from procs.model.field import Field, Point
 from procs.model.game_states import State
 from procs.model.geometry import between
 from procs.model.teams import Team
@@ -56,6 +67,48 @@ def test_receiver_waits_within_the_rules_and_the_reach_of_a_pass(game: Game) -> 
     assert 2.0 <= math.dist(place, game.spot) <= 9.0
     restart = Restart(game.state, Team.CYAN, game.spot)
     assert misplaced(restart, {"cyan2": game.spot, "cyan3": place}) == []
+
+
+@pytest.mark.parametrize(("along", "across"), [(0.5, 0.5), (1.5, 1.0), (1.0, 0.75), (2.0, 1.5)])
+def test_places_of_the_book_grow_with_the_field(along: float, across: float) -> None:
+    """Receivers on a short field waited as far from the ball as on the usual field."""
+    field = Field(length_m=along * FIELD.length_m, width_m=across * FIELD.width_m)
+    for state, spot in ((State.KICK_OFF, Point(0.0, 0.0)), (State.FREE_KICK, Point(1.0, 4.0))):
+        usual = Game(state, stopped=True, whose=Whose.OURS, spot=spot)
+        game = usual._replace(spot=Point(along * spot.x_m, across * spot.y_m))
+        for place in (back_left, back_right, wide_left, wide_right, square, ahead_on_the_wing, long_to_the_wing, short):
+            x_m, y_m = place(usual, FIELD)
+            assert place(game, field) == pytest.approx((along * x_m, across * y_m)), place.__name__
+    corner = Game(State.CORNER_KICK, stopped=True, whose=Whose.OURS, spot=Point(field.half_length_m - 0.2, -3.0))
+    x_m, y_m = cut_back(corner, field)
+    assert field.half_length_m - x_m == pytest.approx(field.penalty_area_depth_m + 1.35)
+    assert y_m == pytest.approx(across * cut_back(corner, FIELD).y_m)
+
+
+def test_places_of_the_book_on_the_usual_field() -> None:
+    game = Game(State.CORNER_KICK, stopped=True, whose=Whose.OURS, spot=Point(2.0, 4.0))
+    places = (
+        back_left,
+        back_right,
+        wide_left,
+        wide_right,
+        square,
+        ahead_on_the_wing,
+        long_to_the_wing,
+        short,
+        cut_back,
+    )
+    assert [place(game, FIELD) for place in places] == [
+        (-2.2, 1.0),
+        (-2.2, -1.0),
+        (-0.7, 4.5),
+        (-0.7, -4.5),
+        (2.0, 4.0 - 3.2),
+        (5.5, 4.0),
+        (7.5, -3.0),
+        (-1.0, 4.0),
+        (11.0 - 3.6, 2.2),
+    ]
 
 
 @pytest.mark.parametrize("spot", [Point(-10.25, 6.9), Point(-10.25, -6.9), Point(-10.0, 6.9)])
