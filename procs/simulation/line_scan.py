@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from procs.model.algebra import Floats, product
+from procs.model.algebra import Floats
 from procs.model.field import Field, Point
 from procs.vision.mirror import Mirror
 
@@ -29,7 +29,8 @@ class LineScan:
             ends.append(around[1:])
         self._width_m = field.line_width_m
         first, last = np.concatenate(starts), np.concatenate(ends)
-        self._middles_m, self._spans_m = (first + last) / 2, last - first
+        self._x_m, self._y_m = ((first + last) / 2).T.copy()  # of the middles; columns take a fraction of the time
+        self._span_x_m, self._span_y_m = (last - first).T.copy()
 
     def points(
         self,
@@ -48,24 +49,28 @@ class LineScan:
         picture with the probability that the middle of a pixel lies on it.
         """
         cosine, sine = math.cos(heading_rad), math.sin(heading_rad)
-        to_robot = np.array(((cosine, -sine), (sine, cosine)))
-        luck = rng.random(len(self._middles_m))
-        away_m = self._middles_m - place
-        near = (away_m**2).sum(axis=1) < reach_m**2
-        at_m, span_m, luck = product(away_m[near], to_robot), product(self._spans_m[near], to_robot), luck[near]
-        range_m = np.maximum(np.hypot(at_m[:, 0], at_m[:, 1]), 1e-6)
-        across_m = np.abs(at_m[:, 0] * span_m[:, 1] - at_m[:, 1] * span_m[:, 0]) / range_m
-        along_m = np.abs((at_m * span_m).sum(axis=1)) / range_m
+        away_x_m, away_y_m = self._x_m - place.x_m, self._y_m - place.y_m
+        luck = rng.random(len(away_x_m))
+        near = np.flatnonzero(away_x_m**2 + away_y_m**2 < reach_m**2)
+        x_m, y_m = _turned_back(away_x_m.take(near), away_y_m.take(near), cosine, sine)
+        span_x_m, span_y_m = _turned_back(self._span_x_m.take(near), self._span_y_m.take(near), cosine, sine)
+        range_m = np.maximum(np.hypot(x_m, y_m), 1e-6)
+        across_m = np.abs(x_m * span_y_m - y_m * span_x_m) / range_m
+        along_m = np.abs(x_m * span_x_m + y_m * span_y_m) / range_m
         pixel_m, _ = mirror.metres_per_px_each(range_m)
-        length_m = np.hypot(span_m[:, 0], span_m[:, 1])
+        length_m = np.hypot(span_x_m, span_y_m)
         shown = np.minimum(1.0, self._width_m * length_m / np.maximum(across_m * pixel_m, 1e-12))
-        met = np.floor(shown * across_m / range_m * rays / math.tau + luck).astype(np.intp)
-        for ring_m in rings_m:
-            met += np.abs(range_m - ring_m) <= along_m / 2
+        met = np.floor(shown * across_m / range_m * rays / math.tau + luck.take(near)).astype(np.intp)
+        met += (np.abs(range_m - np.array(rings_m)[:, None]) <= along_m / 2).sum(axis=0)
         piece = np.repeat(np.arange(len(met)), met)
         number = np.arange(len(piece)) - np.repeat(met.cumsum() - met, met)
         share = (number + 0.5) / met[piece] - 0.5
-        return np.asarray(at_m[piece] + share[:, None] * span_m[piece])
+        return np.column_stack((x_m[piece] + share * span_x_m[piece], y_m[piece] + share * span_y_m[piece]))
+
+
+def _turned_back(x_m: Floats, y_m: Floats, cosine: float, sine: float) -> tuple[Floats, Floats]:
+    """Returns vectors (n), given by x and y, turned clockwise by the angle with that cosine and sine."""
+    return x_m * cosine + y_m * sine, y_m * cosine - x_m * sine
 
 
 @lru_cache(maxsize=4)

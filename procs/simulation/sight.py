@@ -26,7 +26,7 @@ def hidden(points_m: Floats, bodies_m: Floats, radius_m: float) -> Floats:
     along_m = product(ahead, bodies_m.T)
     beside_m = np.abs(ahead[:, :1] * bodies_m[:, 1] - ahead[:, 1:] * bodies_m[:, 0])
     behind = (along_m > 0) & (along_m < range_m[:, None] - radius_m)
-    cover = np.clip((radius_m - beside_m) / radius_m, 0.0, 1.0)
+    cover = np.maximum((radius_m - beside_m) / radius_m, 0.0)
     return np.asarray(np.where(behind, np.minimum(1.0, 2 * cover), 0.0).max(axis=1))
 
 
