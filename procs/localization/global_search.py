@@ -57,7 +57,8 @@ class GlobalSearch:
             place = int(score.argmax())
             row[:2] = self._positions_m[place]
             row[2] = headings_rad[turn[place]]
-            score[np.abs(self._positions_m - row[:2]).max(axis=1) < apart_m] = -1.0
+            x_m, y_m = self._positions_m.T
+            score[(np.abs(x_m - row[0]) < apart_m) & (np.abs(y_m - row[1]) < apart_m)] = -1.0
         return found
 
     def _scores(self, points: LinePoints, heading_rad: float) -> Floats:

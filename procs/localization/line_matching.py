@@ -77,10 +77,8 @@ def match(lines: LineMap, points: LinePoints, starts: Floats, iterations: int = 
 
     `robust_m` is the c of the robust error: a point twice as far from every line hardly counts.
     """
-    poses = starts.copy()
-    best = _evaluate(lines, points, poses, robust_m)
-    kept = poses.copy()
-    information, gradient, scores = (array.copy() for array in best)
+    poses, kept = starts, starts.copy()
+    information, gradient, scores = _evaluate(lines, points, poses, robust_m)
     step_information, step_gradient = information, gradient
     for _ in range(iterations):
         step = np.linalg.solve(step_information + _DAMPING, step_gradient[..., None])[..., 0]
