@@ -25,6 +25,7 @@ _KEPT_US = 400_000  # older inputs are not used
 _LONGEST_STEP_US = 100_000  # longest step of the filter
 _DOUBT_S = 0.3  # a sighting that does not fit is kept for so long, or until the next frame
 _OBSERVER_US = 500_000  # a robot observes the ball for so long after a sighting
+_USUAL = Step()  # conditions after the last tick
 _PUT_DOWN, _BY_OWN_CAMERA, _BY_MATE, _HELD, _KICKED = range(5)  # order of the inputs of one moment
 
 _Input = Callable[[BallTrack], None]
@@ -215,4 +216,4 @@ class BallTracker:
         """Yields the end and the conditions of each part into which a prediction is divided."""
         while from_us < to_us:
             from_us = min(to_us, from_us + _LONGEST_STEP_US)
-            yield from_us, next((step for step in self._steps if step.end_us >= from_us), Step())
+            yield from_us, next((step for step in self._steps if step.end_us >= from_us), _USUAL)

@@ -52,8 +52,9 @@ class QuietMates:
         if heard:
             self._tracks.drop(heard)
         self._found = {}
-        late, sure = [mate for mate in mates if _is_late(mate, now_s)], self._tracks.sure.tolist()
-        if not (late and sure):
+        late = [mate for mate in mates if _is_late(mate, now_s)]
+        sure = self._tracks.sure.tolist() if late else []
+        if not sure:
             return
         told_m = np.array([mate.position_at(now_s) for mate in late])
         apart_m = np.sqrt(((told_m[:, None] - self._tracks.states[None, sure, :2]) ** 2).sum(axis=2))
