@@ -176,15 +176,21 @@ def first_opponent_place(game: Game, field: Field, bodies: Bodies = USUAL) -> Po
     return allowed(place, game, field, bodies)
 
 
-def helper_place(place: Point, game: Game, field: Field, taken: Sequence[Point] = (), bodies: Bodies = USUAL) -> Point:
-    """Returns the place of a robot that is not the nearest of its team: one near `place` that the rules allow.
+def helper_place(place: Point, game: Game, field: Field, bodies: Bodies = USUAL) -> Point:
+    """Returns the place of a robot that is not the nearest of its team: one near `place` that the rules allow."""
+    return helper_places([place], game, field, bodies)[0]
 
-    It is apart from the places of mates that are `taken`, and from that of the nearest robot.
+
+def helper_places(wanted: Sequence[Point], game: Game, field: Field, bodies: Bodies = USUAL) -> list[Point]:
+    """Returns the places of robots that are not the nearest of their team: near the `wanted` ones, as the rules allow.
+
+    They are apart from each other, and from the place of the nearest robot.
     """
-    place = allowed(place, game, field, bodies)
-    if game.whose is not Whose.OURS:
-        taken = [*taken, first_opponent_place(game, field, bodies)]
-    return place if _is_apart(place, taken, bodies) else _around(place, game, field, bodies, taken)
+    found, first = list[Point](), [] if game.whose is Whose.OURS else [first_opponent_place(game, field, bodies)]
+    for each in wanted:
+        place, taken = allowed(each, game, field, bodies), [*found, *first]
+        found.append(place if _is_apart(place, taken, bodies) else _around(place, game, field, bodies, taken))
+    return found
 
 
 def allowed(place: Point, game: Game, field: Field, bodies: Bodies = USUAL) -> Point:

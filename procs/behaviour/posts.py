@@ -30,10 +30,7 @@ def posts(
     found = _formation(count, game.spot, game.whose is Whose.OURS, _set_piece_flank(game, received), field)
     if received:
         found[0] = received
-    places: list[Point] = []
-    for place in found:
-        places.append(formation.helper_place(place, game, field, places, view.bodies))
-    return places
+    return formation.helper_places(found, game, field, view.bodies)
 
 
 def _formation(count: int, ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
