@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from procs.model.algebra import Floats, product
+from procs.model.algebra import Floats
 from procs.model.rays import left_of, rays
 from procs.vision.mirror import Mirror
 from procs.vision.uncertainty import ground_covariance
@@ -23,11 +23,11 @@ def hidden(points_m: Floats, bodies_m: Floats, radius_m: float) -> Floats:
     bodies_m = bodies_m[np.hypot(bodies_m[:, 0], bodies_m[:, 1]) < range_m.max()]
     if not len(bodies_m):
         return np.zeros(len(points_m))
-    along_m = product(ahead, bodies_m.T)
-    beside_m = np.abs(ahead[:, :1] * bodies_m[:, 1] - ahead[:, 1:] * bodies_m[:, 0])
-    behind = (along_m > 0) & (along_m < range_m[:, None] - radius_m)
+    (ahead_x, ahead_y), (x_m, y_m) = ahead.T.copy(), bodies_m.T[:, :, None]  # (body, point)
+    along_m, beside_m = ahead_x * x_m + ahead_y * y_m, np.abs(ahead_x * y_m - ahead_y * x_m)
+    behind = (along_m > 0) & (along_m < range_m - radius_m)
     cover = np.maximum((radius_m - beside_m) / radius_m, 0.0)
-    return np.asarray(np.where(behind, np.minimum(1.0, 2 * cover), 0.0).max(axis=1))
+    return np.asarray(np.where(behind, np.minimum(1.0, 2 * cover), 0.0).max(axis=0))
 
 
 class Glimpse(NamedTuple):
