@@ -61,6 +61,7 @@ class MemoryHost:
         self._index = assignment.host
         self._own_port = self._ports.host(assignment.host)
         self._gateway_port = self._ports.host(self._ports.gateway)
+        self._first_channel = self._ports.channel(0)
         self._ledger = ledger
         self._step = -1  # step of the ledger when a tick last carried the marks
         self._settings: list[settings_change_t] = []  # changes that the next tick carries
@@ -253,7 +254,9 @@ class MemoryHost:
         if message is None:
             return
         channel, data = message
-        if channel == sync.DONE:
+        if address[1] >= self._first_channel:
+            self._written.append((channel.decode(), data))
+        elif channel == sync.DONE:
             self._take_done(sync.decode_done(data))
         elif channel == b"fwk/log":
             if self._on_log:
@@ -262,8 +265,6 @@ class MemoryHost:
             self._answer(fetch_t.decode(data))
         elif channel == sync.LEAVING:
             self._see_off(sync.decode_leaving(data))
-        elif address[1] >= self._ports.channel(0):
-            self._written.append((channel.decode(), data))
 
     def _see_off(self, leaving: leaving_t) -> None:
         """Answers in the gateway's place that every message has arrived."""
