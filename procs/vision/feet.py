@@ -56,24 +56,23 @@ def feet_in(hsv: Picture, star: Scan, black: ColourRange, carpet: Sequence[Colou
     if hsv.shape[1] < _BODY_SAMPLES:
         return NO_FEET
     dark = black.mask(hsv)
-    standing = reduce(or_, (colour.mask(hsv) for colour in carpet))
     last = dark.shape[1] - _BODY_SAMPLES + 1
     body = reduce(and_, (dark[:, i : last + i] for i in range(_BODY_SAMPLES)))
     rays = np.flatnonzero(body.any(axis=1))
     starts = body[rays].argmax(axis=1)
     if (starts == 0).sum() > _COVERED * len(body):
         return NO_FEET
-    seen = (starts == 0) | _any_before(standing, rays, starts)
+    seen = (starts == 0) | _any_before(hsv, rays, starts, carpet)
     points_m = (star.ground_m[rays, starts] + star.ground_m[rays, np.maximum(starts - 1, 0)]) / 2
     if seen.all():
         return Feet(rays, points_m, seen)
     return _with_hidden(Feet(rays, points_m, seen), len(body))
 
 
-def _any_before(mask: Mask, rays: Indices, starts: Indices) -> Mask:
-    """Returns flags (n): whether a mask marks one of the last samples before `starts` (n) on the rays (n)."""
-    samples = (starts[:, None] - np.arange(1, _FEET_SAMPLES + 1)).clip(0)
-    return np.asarray(mask[rays[:, None], samples].any(axis=1))
+def _any_before(hsv: Picture, rays: Indices, starts: Indices, colours: Sequence[ColourRange]) -> Mask:
+    """Returns flags (n): whether one of the last samples before `starts` (n) on the rays (n) has one of the colours."""
+    before = hsv[rays[:, None], (starts[:, None] - np.arange(1, _FEET_SAMPLES + 1)).clip(0)]
+    return np.asarray(reduce(or_, (colour.mask(before) for colour in colours)).any(axis=1))
 
 
 def _with_hidden(feet: Feet, ray_count: int) -> Feet:
