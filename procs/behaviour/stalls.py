@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from procs.behaviour.game import Game, Whose
+from procs.behaviour.goals import Goals
 from procs.behaviour.roles import ATTACKER, DEFENDER, ROLLS_M_S, SUPPORTER, Job
 from procs.behaviour.view import Robot, View
 from procs.model.field import Field, Point
@@ -75,7 +76,10 @@ def _ball_waits(view: View, game: Game, field: Field) -> bool:
     ball = view.ball
     allowed = game.free_play or (game.whose is Whose.OURS and not game.stopped)
     lies = ball.known and ball.speed_m_s < ROLLS_M_S and not view.is_at_ball(view.opponents, _RIVAL_M)
-    return allowed and lies and not field.in_penalty_area(*ball.place, -1.0, _KEEPERS_M)
+    if not allowed or not lies or field.in_penalty_area(*ball.place, -1.0, _KEEPERS_M):
+        return False
+    nearest = Goals(field, view.bodies).outside_areas(ball.place)  # in the rivals' goal area the ball is out of reach
+    return math.dist(nearest, ball.place) <= view.bodies.held_ball_m
 
 
 def _is_away(robot: Robot, job: Job | None, view: View, game: Game) -> bool:

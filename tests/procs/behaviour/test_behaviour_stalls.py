@@ -49,6 +49,12 @@ def test_stalled_robot_is_tried_again_after_a_while() -> None:
     assert not stalled_after(stalls, 2.0, seen()), "it has the usual time again"
 
 
+@pytest.mark.parametrize("where", [ball(10.45, 1.5), ball(10.7, 2.25)], ids=["before", "beside"])
+def test_attacker_is_stalled_before_a_ball_that_it_may_reach(where: Ball) -> None:
+    """The ball lies in the rivals' goal area or beside it, within reach of a robot outside."""
+    assert stalled_after(Stalls(), 3.0, seen(where=where)) == {"cyan2"}
+
+
 def test_mate_with_the_own_name_changes_nothing() -> None:
     twin = HELD._replace(place=Point(-5.0, 0.0), role=SUPPORTER)
     assert stalled_after(Stalls(), 3.0, view(HELD, BALL, (KEEPER, twin, SUPPORT, SUPPORT))) == {"cyan2"}
@@ -67,8 +73,17 @@ def test_robot_finds_itself_stalled() -> None:
         seen(HELD, ball(3.0, 1.0, -1.0)),
         seen(HELD, ball(-9.0, 1.0)),
         seen(HELD, BALL, robot("magenta2", 3.6, 1.0)),
+        seen(HELD._replace(place=Point(10.15, 1.5)), ball(10.7, 1.5)),
     ],
-    ids=["supporter", "awaits a pass", "ball unknown", "ball rolls", "ball is the keeper's", "rival is at the ball"],
+    ids=[
+        "supporter",
+        "awaits a pass",
+        "ball unknown",
+        "ball rolls",
+        "ball is the keeper's",
+        "rival is at the ball",
+        "ball is in the rivals' goal area",
+    ],
 )
 def test_robot_with_a_reason_to_stand_is_not_stalled(what: View) -> None:
     assert not stalled_after(Stalls(), 5.0, what)
