@@ -14,9 +14,9 @@ class ExpectedErrors(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    ball_px: PositiveFloat = 0.3
+    ball_px: PositiveFloat = 0.23
     """A ball's centre in the picture of a standing robot; the shaking of its mirror is included."""
-    ball_shake_s_m: NonNegativeFloat = 0.9
+    ball_shake_s_m: NonNegativeFloat = 1.25
     """Growth of `ball_px` for each m/s of the robot, because the mirror of a faster robot shakes more; as a share."""
     robot_px: tuple[PositiveFloat, PositiveFloat] = (0.6, 1.5)
     """Another robot's middle in the picture of a standing one, along and across the ray; with the shaking."""
@@ -64,7 +64,7 @@ EXPECTED: dict[Realism, ExpectedErrors] = {
         wheel_noise_sqrt_s=0.0,
     ),
     "friendly": ExpectedErrors(
-        ball_px=0.15,
+        ball_px=0.12,
         robot_px=(0.3, 0.75),
         stereo_px=0.15,
         frame_s=0.01,

@@ -48,7 +48,7 @@ class BallSight:
         """Returns the percept of a ball.
 
         Where a ball in the air appears, a ball on the ground would be further away and smaller. A ball that is not much
-        larger than that is taken for a ball on the ground.
+        larger than that is taken for a ball on the ground. One on the ground that a shake moves outwards seems larger.
 
         Args:
             at_m: (1, 2), x and y in the robot frame.
@@ -61,16 +61,15 @@ class BallSight:
         column, row, radius_px = self.mirror.sphere((*at_m[0].tolist(), height_m + self.radius_m), self.radius_m)
         restored = glimpse.one_edge and radius_px >= LEAST_TOLD_PX
         middle_m, doubt = (at_m, 0.0) if restored else (seen_m, 1.0)
-        if height_m <= 0.0:
-            return self._blurred(middle_m, visible, doubt, moved_px, noise)
-        area = max(_LEAST_AREA, visible * (1.0 + self.errors.ball_area_px / radius_px * noise[2]))
+        area_error = self.errors.ball_area_px / radius_px * noise[2] - self.errors.ball_area_lost
+        area = max(_LEAST_AREA, visible * (1.0 + area_error))
         viewpoint_m = self.mirror.height_m - self.radius_m
         if height_m < viewpoint_m:
-            appears_m = middle_m * viewpoint_m / (viewpoint_m - height_m)
-            *_, expected_px = self.mirror.sphere((*appears_m[0].tolist(), self.radius_m), self.radius_m)
+            appears_m = self._blurred(middle_m * viewpoint_m / (viewpoint_m - height_m), moved_px, noise)
+            *_, expected_px = self.mirror.sphere((*appears_m, self.radius_m), self.radius_m)
             fit = area * (radius_px / expected_px) ** 2
             if fit <= most_fit(expected_px):
-                return self._blurred(appears_m, min(fit, 1.0 / fit), doubt, moved_px, noise)
+                return self.on_ground(*appears_m, min(fit, 1.0 / fit), doubt)
         if not self.mirror.shows_all(column, row, radius_px):
             return ball_percept_t()
         spread = float(np.interp(visible, _VISIBLE, _SPREADS))
@@ -93,15 +92,14 @@ class BallSight:
             percept.covariance_m2 = claimed(self.mirror, x_m, y_m, deviation_px, deviation_px)
         return percept
 
-    def _blurred(
-        self, at_m: Floats, confidence: float, doubt: float, moved_px: tuple[float, float], noise: list[float]
-    ) -> ball_percept_t:
+    def _blurred(self, at_m: Floats, moved_px: tuple[float, float], noise: list[float]) -> tuple[float, float]:
+        """Returns where a ball on the ground appears that would be at a place (1, 2) without errors."""
         along, across = (
             np.array([px + self.errors.ball_px * drawn]) for px, drawn in zip(moved_px, noise[:2], strict=True)
         )
         moved_m = blurred(self.mirror, at_m, along, across)
         x_m, y_m = moved_m[0].tolist()
-        return self.on_ground(x_m, y_m, confidence, doubt)
+        return x_m, y_m
 
     def _in_the_air(
         self,

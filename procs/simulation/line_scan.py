@@ -7,9 +7,12 @@ import numpy as np
 
 from procs.model.algebra import Floats
 from procs.model.field import Field, Point
+from procs.simulation.percept_errors import PerceptErrors
+from procs.vision.colours import Mask
 from procs.vision.mirror import Mirror
 
 _PIECE_M = 0.1
+_BARE = 0.5  # width of a place where paint is missing, as a share of the line's; as in pictures
 
 
 class LineScan:
@@ -40,13 +43,13 @@ class LineScan:
         rings_m: tuple[float, ...],
         reach_m: float,
         mirror: Mirror,
+        errors: PerceptErrors,
         rng: np.random.Generator,
     ) -> Floats:
-        """Returns the crossings (n, 2) within reach, robot frame: of rays in equal angles, and of rings.
+        """Returns the points (n, 2) found on lines within reach, robot frame: by rays in equal angles, and by rings.
 
         A piece that spans half the angle between two rays is met by one of them with a probability of one half, one
-        that spans the angle three times by three. A ray meets a line that is narrower than a pixel of the mirror's
-        picture with the probability that the middle of a pixel lies on it.
+        that spans the angle three times by three.
         """
         cosine, sine = math.cos(heading_rad), math.sin(heading_rad)
         away_x_m, away_y_m = self._x_m - place.x_m, self._y_m - place.y_m
@@ -57,15 +60,41 @@ class LineScan:
         range_m = np.maximum(np.hypot(x_m, y_m), 1e-6)
         across_m = np.abs(x_m * span_y_m - y_m * span_x_m) / range_m
         along_m = np.abs(x_m * span_x_m + y_m * span_y_m) / range_m
-        pixel_m, _ = mirror.metres_per_px_each(range_m)
-        length_m = np.hypot(span_x_m, span_y_m)
-        shown = np.minimum(1.0, self._width_m * length_m / np.maximum(across_m * pixel_m, 1e-12))
-        met = np.floor(shown * across_m / range_m * rays / math.tau + luck.take(near)).astype(np.intp)
-        met += (np.abs(range_m - np.array(rings_m)[:, None]) <= along_m / 2).sum(axis=0)
+        met = np.floor(across_m / range_m * rays / math.tau + luck.take(near)).astype(np.intp)
         piece = np.repeat(np.arange(len(met)), met)
         number = np.arange(len(piece)) - np.repeat(met.cumsum() - met, met)
         share = (number + 0.5) / met[piece] - 0.5
-        return np.column_stack((x_m[piece] + share * span_x_m[piece], y_m[piece] + share * span_y_m[piece]))
+        on_rings = np.nonzero(np.abs(range_m - np.array(rings_m, float)[:, None]) <= along_m / 2)[1]
+        piece, share = np.concatenate((piece, on_rings)), np.concatenate((share, np.zeros(len(on_rings))))
+        length_m = np.maximum(np.hypot(span_x_m, span_y_m), 1e-9)
+        along_px_m, across_px_m = mirror.metres_per_px_each(range_m)
+        pixel_m = np.hypot(along_px_m * across_m, across_px_m * along_m) / length_m
+        found, aside_m = self._sampled(pixel_m[piece], errors, rng)
+        piece, share, aside = piece[found], share[found], aside_m[found] / length_m[piece[found]]
+        span_x_m, span_y_m = span_x_m[piece], span_y_m[piece]
+        return np.column_stack(
+            (x_m[piece] + share * span_x_m - aside * span_y_m, y_m[piece] + share * span_y_m + aside * span_x_m)
+        )
+
+    def _sampled(self, pixel_m: Floats, errors: PerceptErrors, rng: np.random.Generator) -> tuple[Mask, Floats]:
+        """Returns which crossings (n) show white, and how far (n) the middle of that is from the line's.
+
+        A line that is narrower than a pixel is met with the probability that the middle of a pixel lies on it; the
+        place of a wider one is known to a pixel. Where paint is missing, the wider part of the line is left.
+
+        Args:
+            pixel_m: width of a pixel across the line, at each crossing.
+            errors: missing paint, and blur.
+            rng: draws luck.
+        """
+        bare, middle, met, white, phase = rng.random((5, len(pixel_m)))
+        width_m, bare_m = self._width_m, _BARE * self._width_m
+        left_m = np.abs(middle - 0.5) * (width_m + bare_m) + (width_m - bare_m) / 2  # beside the bare place
+        worn = bare * bare_m < errors.worn * (width_m + bare_m)
+        seen_m = np.where(worn, np.minimum(left_m, width_m), width_m)
+        found = (met * pixel_m < seen_m) & (white * errors.line_blur_px * pixel_m <= width_m)
+        aside_m = np.sign(middle - 0.5) * (seen_m - width_m) / 2 + (phase - 0.5) * np.minimum(pixel_m, seen_m)
+        return found, aside_m
 
 
 def _turned_back(x_m: Floats, y_m: Floats, cosine: float, sine: float) -> tuple[Floats, Floats]:

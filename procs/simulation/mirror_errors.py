@@ -20,7 +20,7 @@ class MirrorErrors(BaseModel):
     latency_s: float = 0.0
     """Time from the exposure until the frame or its percepts are published. ER-Force: 35 ms, MRA: 25 ms."""
     shake_px: float = 0.0
-    """Standard deviation by which the standing robot's mirror shakes everything that a frame shows, in pixels. Pictures
+    """Standard deviation by which the standing robot's mirror shakes everything that a frame shows, in pixels. Frames
     move in steps of half a pixel, so that 0.1 px become 0.06 px there, 0.2 px 0.23 px and 0.4 px 0.43 px."""
     shake_px_per_m_s: float = 0.0
     """Growth of that deviation with each m/s; 0.3 gives about CAMBADA's deviation at 4 m for a robot that drives."""

@@ -1,7 +1,8 @@
 """Deviation from the ideal of percepts drawn from the truth, for each preset; fitted to those of the rendered path.
 
-Deviations are in pixels of the mirror's picture, so that they grow with distance as those of the detectors do. Rates of
-phantoms and recognition are those of B-Human's percepts from the truth and ER-Force's simulator; others are estimates.
+Deviations are in pixels of the mirror's picture, so that they grow with distance as those of the detectors do. What
+rays and pixels of the detectors add is the same for all presets. Rates of balls and robots that are not there are those
+of B-Human's percepts from the truth and ER-Force's simulator.
 """
 
 from procs.model.realism import Realism
@@ -14,21 +15,23 @@ class PerceptErrors(MirrorErrors):
     ball_px: float = 0.0
     """Standard deviation of the ball's place, in pixels. Fitted to rendered pictures."""
     ball_area_px: float = 0.0
-    """Relative standard deviation of the ball's area, by which a ball in the air is known, times its radius."""
-    robot_along_px: float = 0.0
-    """Standard deviation of a robot's place along the ray from the camera, in pixels. Fitted to rendered pictures."""
-    robot_across_px: float = 0.0
-    """The same across the ray."""
-    line_px: float = 0.0
-    """Standard deviation of a point on a line, in pixels. Fitted to rendered pictures."""
+    """Relative standard deviation of the ball's area, by which a ball in the air is known, times its radius. Fitted to
+    rendered pictures."""
+    ball_area_lost: float = 0.0
+    """Part of the ball's area that noise and cast hide. Fitted to rendered pictures."""
+    line_blur_px: float = 0.0
+    """Least width in the picture, in pixels, of a line that blur leaves white; a narrower one is found in a part of its
+    points. Fitted to rendered pictures."""
+    worn: float = 0.0
+    """Part of the lines' paint that is missing; as in `CameraErrors`."""
     ball_missed: float = 0.0
-    """Part of the frames in which a visible ball is not found. ER-Force: 5 %."""
+    """Part of the frames in which a visible ball is not found. Fitted to rendered pictures."""
     robot_missed: float = 0.0
-    """Part of the frames in which a visible robot is not found. ER-Force: 2 %."""
+    """Part of the frames in which a visible robot is not found. Fitted to rendered pictures."""
     team_missed: float = 0.0
-    """Part of the robots whose marker's colour is not recognized. An estimate from rendered pictures."""
+    """Part of the robots whose marker's colour is not recognized. Fitted to rendered pictures."""
     line_missed: float = 0.0
-    """Part of the line points that are not found. Fitted to rendered pictures."""
+    """Part of the line points that are not found; none in rendered pictures, but for paint and blur."""
     ball_phantoms_1_s: float = 0.0
     """Balls a second that are not there. B-Human: 0.0005 a frame."""
     mouth_phantoms_1_s: float = 0.0
@@ -36,54 +39,46 @@ class PerceptErrors(MirrorErrors):
     robot_phantoms_1_s: float = 0.0
     """Robots a second that are not there. B-Human: 0.005 a frame."""
     line_phantoms: float = 0.0
-    """Part of the points that do not lie on a line. An estimate."""
+    """Part of the points that do not lie on a line. Fitted to rendered pictures."""
 
 
 PRESETS: dict[Realism, PerceptErrors] = {
     "none": PerceptErrors(**dict(MIRRORS["none"])),
     "friendly": PerceptErrors(
         **dict(MIRRORS["friendly"]),
-        ball_px=0.1,
-        ball_area_px=0.08,
-        robot_along_px=0.18,
-        robot_across_px=0.92,
-        line_px=0.25,
-        ball_missed=0.02,
-        robot_missed=0.01,
-        team_missed=0.01,
-        line_missed=0.02,
-        line_phantoms=0.01,
+        ball_px=0.03,
+        ball_area_px=0.025,
+        ball_area_lost=0.01,
+        team_missed=0.001,
+        line_phantoms=0.002,
     ),
     "realistic": PerceptErrors(
         **dict(MIRRORS["realistic"]),
-        ball_px=0.15,
-        ball_area_px=0.09,
-        robot_along_px=0.2,
-        robot_across_px=0.92,
-        line_px=0.3,
-        ball_missed=0.05,
-        robot_missed=0.02,
-        team_missed=0.03,
-        line_missed=0.03,
+        ball_px=0.035,
+        ball_area_px=0.03,
+        ball_area_lost=0.015,
+        worn=0.075,
+        ball_missed=0.0005,
+        robot_missed=0.0005,
+        team_missed=0.001,
         ball_phantoms_1_s=0.005,
         mouth_phantoms_1_s=0.05,
         robot_phantoms_1_s=0.05,
-        line_phantoms=0.02,
+        line_phantoms=0.003,
     ),
     "harsh": PerceptErrors(
         **dict(MIRRORS["harsh"]),
-        ball_px=0.3,
-        ball_area_px=0.24,
-        robot_along_px=0.2,
-        robot_across_px=0.92,
-        line_px=0.35,
-        ball_missed=0.1,
-        robot_missed=0.04,
-        team_missed=0.1,
-        line_missed=0.2,
+        ball_px=0.04,
+        ball_area_px=0.055,
+        ball_area_lost=0.02,
+        line_blur_px=2.2,
+        worn=0.15,
+        ball_missed=0.003,
+        robot_missed=0.001,
+        team_missed=0.001,
         ball_phantoms_1_s=0.05,
         mouth_phantoms_1_s=0.05,
         robot_phantoms_1_s=0.1,
-        line_phantoms=0.04,
+        line_phantoms=0.004,
     ),
 }

@@ -27,7 +27,8 @@ from procs.simulation.delayed_truth import DelayedTruth, Exposure
 from procs.simulation.gaps import Gaps
 from procs.simulation.line_scan import line_scan
 from procs.simulation.percept_errors import PRESETS
-from procs.simulation.sight import blurred, claimed, displaced, glimpse_of, hidden
+from procs.simulation.rendering.ground_view import half_pixels
+from procs.simulation.sight import between_rays, blurred, claimed, displaced, edges_px, glimpse_of, hidden
 from procs.vision.calibration import MirrorConfig, below_mirror
 
 
@@ -48,12 +49,12 @@ class PerceptsConfig(Config):
     """Standard deviation of the ball's place, in pixels."""
     ball_area_px: float | None = Setting(default=None, ge=0.0, le=50.0)
     """Relative standard deviation of the ball's area in the picture, times its radius in pixels."""
-    robot_along_px: float | None = Setting(default=None, ge=0.0, le=50.0)
-    """Standard deviation of a robot's place along the ray from the camera, in pixels."""
-    robot_across_px: float | None = Setting(default=None, ge=0.0, le=50.0)
-    """The same across the ray."""
-    line_px: float | None = Setting(default=None, ge=0.0, le=50.0)
-    """Standard deviation of a point on a line, along and across the ray, in pixels."""
+    ball_area_lost: float | None = Setting(default=None, ge=0.0, le=1.0)
+    """Part of the ball's area that is not found."""
+    line_blur_px: float | None = Setting(default=None, ge=0.0, le=50.0)
+    """Least width in the picture, in pixels, of a line that blur leaves white."""
+    worn: float | None = Setting(default=None, ge=0.0, le=1.0)
+    """Part of the lines' paint that is missing."""
     ball_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
     """Part of the frames in which a visible ball is not found."""
     robot_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
@@ -100,7 +101,7 @@ class PerceptsConfig(Config):
     ER-Force's threshold."""
     beyond_line_px: float = Setting(default=2.5, ge=0.0, le=50.0)
     """Pixels of the picture that the detector needs beyond a line. Fitted to rendered pictures."""
-    beyond_robot_px: float = Setting(default=4.0, ge=0.0, le=50.0)
+    beyond_robot_px: float = Setting(default=4.2, ge=0.0, le=50.0)
     """Pixels of the picture that the detector needs beyond the near edge of a robot. Fitted to rendered pictures."""
     ball_phantom_m: float = Setting(default=0.5, gt=0.0, le=20.0)
     """Least distance of a ball that is not there, in metres; the largest is the ball's. An estimate."""
@@ -165,6 +166,7 @@ class Percepts(Component):
         self._stated = EXPECTED[self.config.realism]
         end_px = min(self._mirror.radius_px(self.config.reach_m), self._mirror.size_px / 2 - 1)
         beyond_px = self.config.beyond_line_px, self.config.beyond_robot_px
+        self._line_reach_px = end_px - beyond_px[0]
         self._line_reach_m, edge_m = (self._mirror.distance_m(end_px - spare) for spare in beyond_px)
         body_px = self._mirror.radius_px(self.config.robot.radius_m)
         self._body_m = self._mirror.distance_m(body_px + beyond_px[0])
@@ -184,7 +186,8 @@ class Percepts(Component):
     def _look(self, seen: Exposure, passed_s: float) -> None:
         """Draws all percepts of a frame, `passed_s` after the last one."""
         self._looked, own = True, seen.own
-        shake_px = self._errors.drawn_shake_px(own, self.rng)
+        forward, left = half_pixels(self._errors.drawn_shake_px(own, self.rng))
+        shake_px = forward / 2, left / 2
         others = [(robot.x_m, robot.y_m) for robot in seen.others]
         robots_m = _seen_from(own, np.array(others).reshape(-1, 2))
         self._see_ball(own, seen.truth, robots_m, shake_px, passed_s)
@@ -221,18 +224,18 @@ class Percepts(Component):
 
     def _see_robots(self, robots_m: Floats, teams: list[int], shake_px: tuple[float, float], passed_s: float) -> None:
         errors, config = self._errors, self.config
-        near = np.hypot(robots_m[:, 0], robots_m[:, 1]) <= self._robot_reach_m
-        found_m = robots_m[near]
-        known = self._marker_rng.random(len(found_m)) >= errors.team_missed
-        luck, noise = self.rng.random(len(found_m)), self.rng.standard_normal((2, len(found_m)))
+        known = self._marker_rng.random(len(robots_m)) >= errors.team_missed
+        luck, noise = self.rng.random(len(robots_m)), self.rng.standard_normal(len(robots_m))
         phantom, direction, distance = self.rng.random(3)
+        along, across = self._moved(robots_m, shake_px)
+        along = along + edges_px(robots_m, config.robot.radius_m, config.rays, noise)
+        moved_m = between_rays(self._mirror, robots_m, np.stack((along, across)), config.robot.radius_m, config.rays)
+        near = np.hypot(moved_m[:, 0], moved_m[:, 1]) <= self._robot_reach_m
         most_hidden = 1 - config.least_visible
-        seen = (luck >= errors.robot_missed) & (hidden(found_m, robots_m, config.robot.radius_m) < most_hidden)
-        along, across = self._moved(found_m, shake_px)
-        moved_m = blurred(
-            self._mirror, found_m, along + errors.robot_along_px * noise[0], across + errors.robot_across_px * noise[1]
-        )[seen]
-        colours = np.where(known, np.array(teams, int)[near], obstacle_t.TEAM_UNKNOWN)[seen].tolist()
+        free = hidden(robots_m, robots_m, config.robot.radius_m) < most_hidden
+        seen = near & free & (luck >= errors.robot_missed)
+        moved_m = moved_m[seen]
+        colours = np.where(known, np.array(teams, int), obstacle_t.TEAM_UNKNOWN)[seen].tolist()
         if phantom < -math.expm1(-errors.robot_phantoms_1_s * passed_s):
             least_m = config.robot_phantom_m
             range_m, angle_rad = least_m + distance * (self._robot_reach_m - least_m), direction * math.tau
@@ -254,17 +257,17 @@ class Percepts(Component):
             own.heading_rad,
             config.rays,
             config.ring_distances_m,
-            self._line_reach_m,
+            self._mirror.distance_m(self._line_reach_px + math.hypot(*shake_px)),
             self._mirror,
+            errors,
             self.rng,
         )
-        found_m = found_m[np.hypot(found_m[:, 0], found_m[:, 1]) >= self._body_m]
-        luck, noise = self.rng.random((2, len(found_m))), self.rng.standard_normal((2, len(found_m)))
+        luck = self.rng.random((2, len(found_m)))
         found_m[luck[1] < errors.line_phantoms] *= config.line_phantom_share
         seen = (luck[0] >= errors.line_missed) & (hidden(found_m, robots_m, config.robot.radius_m) <= 0)
-        along, across = self._moved(found_m, shake_px)
-        moved_m = blurred(self._mirror, found_m, along + errors.line_px * noise[0], across + errors.line_px * noise[1])
-        moved_m = moved_m[seen]
+        moved_m = blurred(self._mirror, found_m, *self._moved(found_m, shake_px))
+        range_m = np.hypot(moved_m[:, 0], moved_m[:, 1])
+        moved_m = moved_m[seen & (range_m >= self._body_m) & (range_m <= self._line_reach_m)]
         if len(moved_m) > config.most_points:
             moved_m = moved_m[np.linspace(0, len(moved_m) - 1, config.most_points).astype(int)]
         points = self.line_points.value

@@ -10,6 +10,8 @@ from procs.model.rays import left_of, rays
 from procs.vision.mirror import Mirror
 from procs.vision.uncertainty import ground_covariance
 
+_FARTHER_PX = 0.08  # by which robots seem farther away; fitted to rendered pictures
+
 
 def hidden(points_m: Floats, bodies_m: Floats, radius_m: float) -> Floats:
     """Returns which part (0..1) of the way across each point (n) the nearer round bodies (k, 2) leave hidden.
@@ -87,6 +89,40 @@ def blurred(mirror: Mirror, points_m: Floats, along_px: Floats, across_px: Float
     along_m, across_m = mirror.metres_per_px_each(range_m)
     across = left_of(ahead)
     return np.asarray(points_m + ahead * (along_px * along_m)[:, None] + across * (across_px * across_m)[:, None])
+
+
+def between_rays(mirror: Mirror, robots_m: Floats, moved_px: Floats, radius_m: float, rays_around: int) -> Floats:
+    """Returns where the detector finds robots (n, 2): in the middle of the rays that meet them.
+
+    Args:
+        mirror: the camera.
+        robots_m: middles of the robots, robot frame.
+        moved_px: pixels (2, n) by which their near edges seem moved, along and across the rays through the middles.
+        radius_m: radius of the robots.
+        rays_around: number of rays at equal angles, the first straight ahead.
+    """
+    range_m, ahead = rays(robots_m)
+    edges_m, _ = rays(blurred(mirror, ahead * np.maximum(range_m - radius_m, 1e-6)[:, None], *moved_px))
+    _, ahead = rays(blurred(mirror, robots_m, *moved_px))
+    step_rad = math.tau / rays_around
+    middle = np.arctan2(ahead[:, 1], ahead[:, 0]) / step_rad
+    half = _half_rays(range_m, radius_m, rays_around)
+    angle_rad = (np.ceil(middle - half) + np.floor(middle + half)) / 2 * step_rad
+    return np.asarray((edges_m + radius_m)[:, None] * np.column_stack((np.cos(angle_rad), np.sin(angle_rad))))
+
+
+def edges_px(robots_m: Floats, radius_m: float, rays_around: int, drawn: Floats) -> Floats:
+    """Returns the pixels (n) by which the near edges of robots (n, 2) seem farther away.
+
+    The detector knows the edge on each ray to a pixel and takes the median of the rays; `drawn` (n) is standard normal.
+    """
+    range_m, _ = rays(robots_m)
+    return np.asarray(_FARTHER_PX + 0.5 / np.sqrt(2 * _half_rays(range_m, radius_m, rays_around) + 2) * drawn)
+
+
+def _half_rays(range_m: Floats, radius_m: float, rays_around: int) -> Floats:
+    """Returns the rays (n) that half of a robot meets."""
+    return np.asarray(np.arcsin(np.minimum(1.0, radius_m / range_m)) * rays_around / math.tau)
 
 
 def displaced(

@@ -16,6 +16,12 @@ _FAR_M = 1e4  # where pixels above the horizon look: off the carpet, which gives
 _BAND_PX = 54  # height of a band; lower ones leave out more pixels above the horizon, but need more calls
 
 
+def half_pixels(shake_px: tuple[float, float]) -> tuple[int, int]:
+    """Returns the half pixels, columns and rows, by which a shake moves a picture: at most its margin."""
+    right, down = (round(2 * min(max(shake, -MARGIN_PX), MARGIN_PX)) for shake in shake_px)
+    return right, down
+
+
 class GroundView:
     """Looks up what each pixel sees on the carpet, in bands that end where the ground does."""
 

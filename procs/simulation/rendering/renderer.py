@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from procs.model.algebra import Floats, product
 from procs.model.field import SIDES, Field
 from procs.simulation.rendering.carpet import NEW, Wear, lay_carpet
-from procs.simulation.rendering.ground_view import MARGIN_PX, GroundView
+from procs.simulation.rendering.ground_view import GroundView, half_pixels
 from procs.simulation.rendering.shapes import Bodies, markers, pillars
 from procs.vision.colours import BLACK, ORANGE, WHITE, Bgr, Picture
 from procs.vision.mirror import Mirror
@@ -56,7 +56,7 @@ class Renderer:
 
         `shake_px` moves everything seen in the mirror by so many columns and rows, at most six, in steps of a half.
         """
-        right, down = (round(2 * min(max(shake, -MARGIN_PX), MARGIN_PX)) for shake in shake_px)
+        right, down = half_pixels(shake_px)
         own = scene.own
         frame = self._ground.picture(own.x_m, own.y_m, own.heading_rad, right, down)
         self._draw_upright(frame, scene, np.array((right / 2, down / 2)))

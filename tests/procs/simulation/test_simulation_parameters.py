@@ -38,7 +38,7 @@ def percepts(**settings: Any) -> list[bytes]:
     [
         ("least_visible", 0.4, 0.9),
         ("beyond_line_px", 2.5, 20.0),
-        ("beyond_robot_px", 4.0, 40.0),
+        ("beyond_robot_px", 4.2, 40.0),
         ("ball_phantom_m", 0.5, 2.0),
         ("robot_phantom_m", 0.6, 2.0),
         ("line_phantom_share", 0.8, 0.5),

@@ -126,7 +126,7 @@ def test_match_survives_damaged_messages_of_a_robot(lost: bool, monkeypatch: pyt
 
     No robot touches the ball in this match before the test ends.
     """
-    system = system_of("soccer-percepts.yaml", seed=2)
+    system = system_of("soccer-percepts.yaml", seed=3)
 
     def damage(message: team_message_t, *parts: Any) -> None:
         fill_plan(message, *parts)
