@@ -17,13 +17,14 @@ from procs.model.field import Field, Point
 from procs.model.game_states import State
 from procs.model.geometry import clamp
 
+_CENTRE = Point(0.0, 0.0)
 _CUT_BACK_M = 1.35  # before the opponents' penalty area
 _INSIDE_M = 0.8  # receivers wait so far inside the touch lines
 _FREE_M = 1.5  # and so far from rivals
 
 
 class Variant(NamedTuple):
-    """One way to take a set piece; its place becomes further or nearer with the field, as those of formations do."""
+    """One way to take a set piece; its distances grow and shrink with the field, as those of formations do."""
 
     name: str
     place: Callable[[Game, Field], Point]
@@ -37,56 +38,47 @@ def lay_off(game: Game, field: Field) -> Point:
 
 def square(game: Game, field: Field) -> Point:
     """Level with the ball, on the side of the middle."""
-    _, across = formation.scale(field)
-    return _inside(Point(game.spot.x_m, game.spot.y_m - _away(game) * 3.2 * across), field)
+    return _inside(_from(game.spot, 0.0, -_away(game) * 3.2, field), field)
 
 
 def ahead_on_the_wing(game: Game, field: Field) -> Point:
     """Ahead along the touch line."""
-    along, _ = formation.scale(field)
-    return _inside(Point(game.spot.x_m + 3.5 * along, game.spot.y_m), field)
+    return _inside(_from(game.spot, 3.5, 0.0, field), field)
 
 
 def long_to_the_wing(game: Game, field: Field) -> Point:
     """Far ahead, on the other side of the field."""
-    along, across = formation.scale(field)
-    return _inside(Point(game.spot.x_m + 5.5 * along, -_away(game) * 3.0 * across), field)
+    return _inside(_from(Point(game.spot.x_m, 0.0), 5.5, -_away(game) * 3.0, field), field)
 
 
 def back_left(_game: Game, field: Field) -> Point:
     """Behind the centre mark, a little to the left."""
-    along, across = formation.scale(field)
-    return Point(-2.2 * along, 1.0 * across)
+    return _from(_CENTRE, -2.2, 1.0, field)
 
 
 def back_right(_game: Game, field: Field) -> Point:
     """Behind the centre mark, a little to the right."""
-    along, across = formation.scale(field)
-    return Point(-2.2 * along, -1.0 * across)
+    return _from(_CENTRE, -2.2, -1.0, field)
 
 
 def wide_left(_game: Game, field: Field) -> Point:
     """Beside the centre mark, on the left wing of the own half."""
-    along, across = formation.scale(field)
-    return Point(-0.7 * along, 4.5 * across)
+    return _from(_CENTRE, -0.7, 4.5, field)
 
 
 def wide_right(_game: Game, field: Field) -> Point:
     """Beside the centre mark, on the right wing of the own half."""
-    along, across = formation.scale(field)
-    return Point(-0.7 * along, -4.5 * across)
+    return _from(_CENTRE, -0.7, -4.5, field)
 
 
 def cut_back(game: Game, field: Field) -> Point:
     """Before the penalty area, on the corner's side of the goal."""
-    _, across = formation.scale(field)
-    return Point(formation.before_area_m(field, _CUT_BACK_M), _away(game) * 2.2 * across)
+    return _from(Point(formation.before_area_m(field, _CUT_BACK_M), 0.0), 0.0, _away(game) * 2.2, field)
 
 
 def short(game: Game, field: Field) -> Point:
     """Near the corner, back along the touch line."""
-    along, _ = formation.scale(field)
-    return _inside(Point(game.spot.x_m - 3.0 * along, game.spot.y_m), field)
+    return _inside(_from(game.spot, -3.0, 0.0, field), field)
 
 
 BOOK: Mapping[State, Sequence[Variant]] = {
@@ -129,6 +121,12 @@ def room_rad(spot: Point, place: Point, rivals: Sequence[Robot], bodies: Bodies)
     """
     crowded = any(math.dist(place, rival.place) < _FREE_M for rival in rivals)
     return -math.pi if crowded else aim.lane_rad(spot, place, rivals, bodies)
+
+
+def _from(place: Point, ahead_m: float, left_m: float, field: Field) -> Point:
+    """Returns the place that lies so far ahead and to the left of another on the usual field, scaled to this one."""
+    along, across = formation.scale(field)
+    return Point(place.x_m + ahead_m * along, place.y_m + left_m * across)
 
 
 def _away(game: Game) -> float:
