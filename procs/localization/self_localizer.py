@@ -29,6 +29,7 @@ _LOST_DEVIATIONS = (5.0, 5.0, 0.3)  # m, m, rad: of the pose of a lost robot
 _FOUND_DEVIATIONS = (0.1, 0.1, 0.05)  # m, m, rad: of a pose that has just been found
 _START_DEVIATIONS = (0.3, 0.3, 0.1)  # m, m, rad: of a start that the settings state
 _COMPASS_ERRORS_RAD = (0.0, -0.12, 0.12, -0.24, 0.24)  # errors of the compass that a search tries in turn
+_ALL_AROUND_RAD = np.linspace(-math.pi, math.pi, 24, endpoint=False)  # turns that a search without a compass tries
 _COMPASS_MEMORY_S = 25.0  # time constant of the compass offset: so slow that a carried robot learns little wrong
 _COMPASS_FORGETS_S = 5.0  # time constant with which the offset fades while the robot searches
 _PLACES, _MANY_PLACES = 4, 16  # that a frame of a search adds; many in a long search, since places ...
@@ -171,25 +172,25 @@ class SelfLocalizer:
         self.score += _share(interval_s, _SCORE_MEMORY_S) * (float(found.scores[0]) - self.score)
         if found.scores[0] > settings.lost_score:
             self._filter.correct(found.poses[0], self._match_covariance(found, shared), interval_s)
-        heading_rad = float(self.pose[2])
+        headings_rad = self.pose[2] + _ALL_AROUND_RAD
         if compass_rad is not None:
-            deviation_rad = wrap_rad(compass_rad - self.compass_offset_rad - heading_rad)
+            deviation_rad = wrap_rad(compass_rad - self.compass_offset_rad - float(self.pose[2]))
             self.compass_offset_rad += _share(interval_s, _COMPASS_MEMORY_S) * deviation_rad
             contradicted = abs(deviation_rad) > settings.compass_limit_rad
             fits = found.scores[0] >= max(settings.good_score, _AS_USUAL * usual_score)
             counts = 1 if fits else _CONTRADICTIONS
             self._contradictions = self._contradictions + counts if contradicted else 0
-            heading_rad = compass_rad - self.compass_offset_rad
+            headings_rad = np.array([compass_rad - self.compass_offset_rad])
         if self._contradictions >= _CONTRADICTIONS or self.score < settings.lost_score:
             self._lose()
         elif self._since_search_s >= settings.search_period_s:
             self._since_search_s = 0.0
-            self._look_for_rivals(points, heading_rad)
+            self._look_for_rivals(points, headings_rad)
 
-    def _look_for_rivals(self, points: LinePoints, heading_rad: float) -> None:
+    def _look_for_rivals(self, points: LinePoints, headings_rad: Floats) -> None:
         """Searches the whole field; gives the pose up once another place was clearly better several times in a row."""
         thin = points.thinned(self._settings.search_points)
-        others = self._search.best(thin, np.array([heading_rad]), 3)
+        others = self._search.best(thin, headings_rad, 3)
         found = match(self._lines, thin, np.vstack((self.pose, others)))
         ahead = float(found.scores[1:].max() - found.scores[0])
         self._rivals = self._rivals + 1 if ahead > self._settings.rival_lead else 0

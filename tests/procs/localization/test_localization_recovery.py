@@ -162,12 +162,14 @@ def test_kidnapping_is_noticed_with_frames_of_every_second_tick(parity: int) -> 
     assert np.hypot(*robot.error(bench)[:2]) < 0.3
 
 
-def test_robot_without_compass_is_declared_lost() -> None:
+@pytest.mark.parametrize("carried_to", [(4.0, -3.0, 0.3), (3.103, -3.089, 2.942)], ids=["not turned", "turned"])
+def test_robot_without_compass_is_declared_lost(carried_to: tuple[float, float, float]) -> None:
+    """Turned, it matched the lines of a wrong place: it looked for better ones with its old heading only."""
     start = {"start_x_m": -5.0, "start_y_m": 2.0, "start_heading_rad": 0.3}
     bench, robot = Bench(Localization, **settings_in("soccer.yaml", "cyan1/localization") | start), FakeRobot(4)
     known: list[bool] = []
     for tick in range(200):
-        robot.pose = np.array((-5.0, 2.0, 0.3) if tick < 60 else (4.0, -3.0, 0.3))
+        robot.pose = np.array((-5.0, 2.0, 0.3) if tick < 60 else carried_to)
         robot.drive(np.zeros(3))
         robot.show(bench)
         bench.port("imu").waiting.clear()
