@@ -28,7 +28,7 @@ from procs.simulation.gaps import Gaps
 from procs.simulation.line_scan import line_scan
 from procs.simulation.percept_errors import PRESETS
 from procs.simulation.rendering.ground_view import half_pixels
-from procs.simulation.sight import between_rays, blurred, claimed, displaced, edges_px, glimpse_of, hidden
+from procs.simulation.sight import between_rays, blurred, claimed, displaced, glimpse_of, hidden
 from procs.vision.calibration import MirrorConfig, below_mirror
 
 
@@ -227,9 +227,8 @@ class Percepts(Component):
         known = self._marker_rng.random(len(robots_m)) >= errors.team_missed
         luck, noise = self.rng.random(len(robots_m)), self.rng.standard_normal(len(robots_m))
         phantom, direction, distance = self.rng.random(3)
-        along, across = self._moved(robots_m, shake_px)
-        along = along + edges_px(robots_m, config.robot.radius_m, config.rays, noise)
-        moved_m = between_rays(self._mirror, robots_m, np.stack((along, across)), config.robot.radius_m, config.rays)
+        moved_px = self._moved(robots_m, shake_px)
+        moved_m = between_rays(self._mirror, robots_m, moved_px, noise, config.robot.radius_m, config.rays)
         near = np.hypot(moved_m[:, 0], moved_m[:, 1]) <= self._robot_reach_m
         most_hidden = 1 - config.least_visible
         free = hidden(robots_m, robots_m, config.robot.radius_m) < most_hidden

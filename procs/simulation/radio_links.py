@@ -21,7 +21,7 @@ class RadioSettings(BaseModel):
     loss: float = 0.0
     """Probability that a message does not arrive, for each receiver on its own. ER-Force: 3 % of the commands."""
     delay_s: float = 0.0
-    """From sending to arrival. An estimate of a wireless network; robots read a message in the next tick."""
+    """Time from sending to arrival. An estimate of a wireless network; robots read a message in the next tick."""
     delay_jitter_s: float = 0.0
     """A message takes up to that much longer; drawn evenly, so messages may overtake each other."""
     outages_1_min: float = 0.0

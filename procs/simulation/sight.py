@@ -91,38 +91,32 @@ def blurred(mirror: Mirror, points_m: Floats, along_px: Floats, across_px: Float
     return np.asarray(points_m + ahead * (along_px * along_m)[:, None] + across * (across_px * across_m)[:, None])
 
 
-def between_rays(mirror: Mirror, robots_m: Floats, moved_px: Floats, radius_m: float, rays_around: int) -> Floats:
+def between_rays(
+    mirror: Mirror, robots_m: Floats, moved_px: tuple[Floats, Floats], drawn: Floats, radius_m: float, rays_around: int
+) -> Floats:
     """Returns where the detector finds robots (n, 2): in the middle of the rays that meet them.
+
+    It knows the near edge on each ray to a pixel and takes the median of the rays.
 
     Args:
         mirror: the camera.
         robots_m: middles of the robots, robot frame.
-        moved_px: pixels (2, n) by which their near edges seem moved, along and across the rays through the middles.
+        moved_px: pixels (n) by which the robots seem moved, along and across the rays through the middles.
+        drawn: (n), standard normal: the errors of the edges.
         radius_m: radius of the robots.
         rays_around: number of rays at equal angles, the first straight ahead.
     """
     range_m, ahead = rays(robots_m)
-    edges_m, _ = rays(blurred(mirror, ahead * np.maximum(range_m - radius_m, 1e-6)[:, None], *moved_px))
-    _, ahead = rays(blurred(mirror, robots_m, *moved_px))
+    half = np.arcsin(np.minimum(1.0, radius_m / range_m)) * rays_around / math.tau  # rays that meet half of a robot
+    along_px, across_px = moved_px
+    along_px = along_px + (_FARTHER_PX + 0.5 / np.sqrt(2 * half + 2) * drawn)
+    near_m = ahead * np.maximum(range_m - radius_m, 1e-6)[:, None]
+    edges_m, _ = rays(blurred(mirror, near_m, along_px, across_px))
+    _, ahead = rays(blurred(mirror, robots_m, along_px, across_px))
     step_rad = math.tau / rays_around
     middle = np.arctan2(ahead[:, 1], ahead[:, 0]) / step_rad
-    half = _half_rays(range_m, radius_m, rays_around)
     angle_rad = (np.ceil(middle - half) + np.floor(middle + half)) / 2 * step_rad
     return np.asarray((edges_m + radius_m)[:, None] * np.column_stack((np.cos(angle_rad), np.sin(angle_rad))))
-
-
-def edges_px(robots_m: Floats, radius_m: float, rays_around: int, drawn: Floats) -> Floats:
-    """Returns the pixels (n) by which the near edges of robots (n, 2) seem farther away.
-
-    The detector knows the edge on each ray to a pixel and takes the median of the rays; `drawn` (n) is standard normal.
-    """
-    range_m, _ = rays(robots_m)
-    return np.asarray(_FARTHER_PX + 0.5 / np.sqrt(2 * _half_rays(range_m, radius_m, rays_around) + 2) * drawn)
-
-
-def _half_rays(range_m: Floats, radius_m: float, rays_around: int) -> Floats:
-    """Returns the rays (n) that half of a robot meets."""
-    return np.asarray(np.arcsin(np.minimum(1.0, radius_m / range_m)) * rays_around / math.tau)
 
 
 def displaced(

@@ -166,7 +166,7 @@ def test_robots_err_along_and_across_as_in_pictures(away_m: float, realism: str)
 
 @pytest.mark.parametrize("realism", PRESETS)
 def test_balls_are_seen_as_often_as_in_pictures(realism: str) -> None:
-    """Of 240 balls that nothing hides, less than 2 % are missed."""
+    """Pictures and percepts miss less than 2 % of 240 balls that nothing hides."""
     assert all(seen(rendered, realism).balls > 0.98 for rendered in (False, True))
 
 
