@@ -1,6 +1,7 @@
 """Velocities of an omnidirectional robot that can still stop at its target, within the grip of its wheels."""
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, PositiveFloat
@@ -49,16 +50,21 @@ class Limits(BaseModel):
     """Speed for each metre to go, close to the target."""
     heading_gain_1_s: PositiveFloat = 6.0
     """Turning speed for each radian to go, close to the heading."""
-    latency_s: NonNegativeFloat = 0.1
+    latency_s: NonNegativeFloat = 0.14
     """From a pose's measurement until the wheels follow the command that it led to."""
 
 
-def ahead_in_time(pose: Pose, measured: Velocity, duration_s: float) -> Pose:
-    """Returns the pose after `duration_s`; `measured` is in the robot frame."""
-    middle_rad = pose.heading_rad + measured.omega_rad_s * duration_s / 2
-    vx_m_s, vy_m_s = turned(measured.vx_m_s, measured.vy_m_s, middle_rad)
+def ahead_in_time(pose: Pose, velocity: Velocity, duration_s: float) -> Pose:
+    """Returns the pose after `duration_s`; the velocity is in the robot frame."""
+    middle_rad = pose.heading_rad + velocity.omega_rad_s * duration_s / 2
+    vx_m_s, vy_m_s = turned(velocity.vx_m_s, velocity.vy_m_s, middle_rad)
     place = Point(pose.place.x_m + vx_m_s * duration_s, pose.place.y_m + vy_m_s * duration_s)
-    return Pose(place, wrap_rad(pose.heading_rad + measured.omega_rad_s * duration_s))
+    return Pose(place, wrap_rad(pose.heading_rad + velocity.omega_rad_s * duration_s))
+
+
+def between(one: Velocity, other: Velocity) -> Velocity:
+    """Returns the mean of two velocities in the same frame."""
+    return Velocity(*((a + b) / 2 for a, b in zip(one, other, strict=True)))
 
 
 def turned(x: float, y: float, angle_rad: float) -> tuple[float, float]:
@@ -77,6 +83,22 @@ def turning_to_go_rad_s(turn_rad: float, limit_rad_s: float, limits: Limits) -> 
     """Returns the turning speed from which the robot still stops at the heading."""
     braking_rad_s = math.sqrt(2 * limits.angular_braking_rad_s2 * abs(turn_rad))
     return math.copysign(min(limit_rad_s, braking_rad_s, limits.heading_gain_1_s * abs(turn_rad)), turn_rad)
+
+
+def braked_first(before: Velocity, wanted: Velocity, allowed: Callable[[Point], Point], change_m_s: float) -> Velocity:
+    """Returns the velocity to want in this iteration, so that the robot brakes as it must before it turns as it likes.
+
+    Args:
+        before: velocity of the iteration before.
+        wanted: velocity to come to.
+        allowed: returns the velocity, braked where it leads to a forbidden place.
+        change_m_s: largest change of the velocity in an iteration.
+    """
+    braked = allowed(Point(before.vx_m_s, before.vy_m_s))
+    left_m_s = change_m_s - math.dist(braked, (before.vx_m_s, before.vy_m_s))
+    if left_m_s <= 0.0:
+        return Velocity(*braked, wanted.omega_rad_s)
+    return approach(Velocity(*braked, wanted.omega_rad_s), wanted, 1.0, left_m_s, 0.0)
 
 
 def approach(before: Velocity, wanted: Velocity, duration_s: float, change_m_s2: float, turn_rad_s2: float) -> Velocity:

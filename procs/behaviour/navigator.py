@@ -154,7 +154,7 @@ class Navigator(Component):
             wanted = self._give_way(wanted, pose.place, model, allowed)
         self._before = self._within_walls(self._before, pose.place)
         wanted = self._within_walls(wanted, pose.place)
-        self._command(wanted, pose.heading_rad)
+        self._command(wanted, pose.heading_rad, allowed)
 
     def _possible(self, start: Point, barred: bool, end: Point) -> bool:
         """Returns whether a detour may turn at its end."""
@@ -203,13 +203,17 @@ class Navigator(Component):
         return Velocity(*velocity, wanted.omega_rad_s)
 
     def _pose(self, model: world_model_t) -> Pose:
-        measured = self.odometry.value
+        """Returns the robot's pose when the wheels will begin to follow the next command.
+
+        Until then they follow the commands on their way, from the measured velocity to the newest commanded one.
+        """
+        measured, latency_s = self.odometry.value, self.config.limits.latency_s
+        here = Pose(Point(model.x_m, model.y_m), model.heading_rad)
+        commanded = Velocity(*motion.turned(*self._before[:2], -model.heading_rad), self._before.omega_rad_s)
         velocity = Velocity(measured.vx_m_s, measured.vy_m_s, measured.omega_rad_s)
         if not plausible(*velocity):
             velocity = STANDSTILL
-        return motion.ahead_in_time(
-            Pose(Point(model.x_m, model.y_m), model.heading_rad), velocity, self.config.limits.latency_s
-        )
+        return motion.ahead_in_time(here, motion.between(velocity, commanded), latency_s)
 
     def _velocity(self, target: drive_target_t, way: Way, turn_rad: float) -> Velocity:
         limits = self.config.limits
@@ -224,11 +228,17 @@ class Navigator(Component):
             motion.turning_to_go_rad_s(turn_rad, omega_limit_rad_s, limits),
         )
 
-    def _command(self, wanted: Velocity, heading_rad: float) -> None:
+    def _command(
+        self,
+        wanted: Velocity,
+        heading_rad: float,
+        allowed: Callable[[Point], Point] = lambda velocity_m_s: velocity_m_s,
+    ) -> None:
         limits, held = self.config.limits, self._holds_ball
         change_m_s2 = self._ball_change_m_s2(wanted, heading_rad) if held else limits.acceleration_m_s2
         turn_rad_s2 = limits.ball_angular_acceleration_rad_s2 if held else limits.angular_acceleration_rad_s2
         period_s = self.clock.iteration_s
+        wanted = motion.braked_first(self._before, wanted, allowed, change_m_s2 * period_s)
         self._before = motion.approach(self._before, wanted, period_s, change_m_s2, turn_rad_s2)
         # The robot turns on while it follows the command, so the command is meant for the middle of that time.
         middle_rad = heading_rad + self._before.omega_rad_s * period_s / 2

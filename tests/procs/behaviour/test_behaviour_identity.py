@@ -130,7 +130,7 @@ def test_navigator_drives_on_before_a_mate_of_higher_number() -> None:
     speeds_m_s = {}
     for name, mate in (("anna", "zoe"), ("zoe", "anna")):
         bench = Bench(Navigator, f"{name}/navigator", players=STATED)
-        for _ in range(14):
+        for _ in range(20):
             model = model_of(mate, 2.5, -1.0)
             for port, message in (("world_model", model), ("drive_target", drive_target_t(x_m=5.0, avoid_robots=True))):
                 message.header.time_us = bench.time_us

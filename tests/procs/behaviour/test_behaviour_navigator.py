@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -38,7 +39,7 @@ def test_navigator_drives_in_its_frame_within_its_acceleration() -> None:
     assert speeds_m_s == pytest.approx([0.15, 0.3, 0.45])
     state = newest(bench, "navigator_state")
     assert (state.target_id, state.arrived, state.error) == (7, False, navigator_state_t.OK)
-    assert state.distance_m == pytest.approx(5.0)
+    assert state.distance_m == pytest.approx(5.0 - 0.14 * 0.3 / 2)  # the wheels will follow the last command
 
 
 def test_navigator_in_every_other_tick_accelerates_as_fast() -> None:
@@ -216,29 +217,60 @@ def test_slow_robot_evades_no_faster_than_it_may() -> None:
     assert max(speeds_m_s) == pytest.approx(0.5)
 
 
-def at_set_piece(
-    team: int, x_m: float, target_x_m: float, rival_x_m: float, ticks: int = 40, late_ticks: int = 0
-) -> float:
-    """Returns how near a robot comes to the ball of a set piece in the middle, while a rival drives towards it.
+def test_navigator_counts_on_the_commands_on_their_way() -> None:
+    """A robot that stands and was commanded to drive is believed to drive half as fast until it follows."""
+    bench = Bench(Navigator, "cyan2/navigator")
+    for tick in range(11):
+        put(bench, "world_model", localized=True, heading_rad=1.0)
+        put(bench, "odometry", vx_m_s=1.0 if tick == 10 else 0.0)
+        put(bench, "drive_target", x_m=5.0, heading_rad=1.0)
+        bench.iterate()
+    driven = Point(math.cos(1.0) * 0.5 + 0.75, math.sin(1.0) * 0.5)
+    place = Point(driven.x_m * 0.14, driven.y_m * 0.14)
+    assert newest(bench, "navigator_state").distance_m == pytest.approx(math.dist(place, (5.0, 0.0)))
 
-    Its wheels follow a command so many ticks later.
+
+def way(start: Point, late_ticks: int, ticks: int, look: Callable[[Bench, int, Point], None]) -> list[Point]:
+    """Returns the places of a robot whose wheels follow a command so many ticks later.
+
+    `look` puts what the robot knows at a tick and a place, but for its odometry.
     """
     bench = Bench(Navigator, "cyan2/navigator")
-    place, heading_rad, nearest_m = Point(x_m, 0.0), 0.0, x_m
+    places, heading_rad = [start], 0.0
     command, *waiting = (motor_command_t() for _ in range(1 + late_ticks))
     for tick in range(ticks):
-        rival = estimate(max(1.0, rival_x_m - 1.5 * 0.05 * tick), 0.05)
-        rival.vx_m_s = -1.5
-        put(bench, "game_state", state=game_state_t.FREE_KICK, stopped=True, state_team=team)
-        put(bench, "world_model", localized=True, x_m=place.x_m, y_m=place.y_m, opponents=[rival], n_opponents=1)
+        look(bench, tick, places[-1])
         put(bench, "odometry", vx_m_s=command.vx_m_s, vy_m_s=command.vy_m_s)
-        put(bench, "drive_target", x_m=target_x_m, avoid_robots=True)
         bench.iterate()
         waiting.append(newest(bench, "motor_command"))
         command = waiting.pop(0)
-        place, heading_rad = moved(place, heading_rad, command)
-        nearest_m = min(nearest_m, math.hypot(*place))
-    return nearest_m
+        place, heading_rad = moved(places[-1], heading_rad, command)
+        places.append(place)
+    return places
+
+
+def nearest_m(places: list[Point]) -> float:
+    """Returns how near the places come to the ball, in the middle."""
+    return min(math.hypot(*place) for place in places)
+
+
+def set_piece(bench: Bench, team: int) -> None:
+    put(bench, "game_state", state=game_state_t.FREE_KICK, stopped=True, state_team=team)
+
+
+def at_set_piece(
+    team: int, x_m: float, target_x_m: float, rival_x_m: float, ticks: int = 40, late_ticks: int = 0
+) -> float:
+    """Returns how near a robot comes to the ball of a set piece in the middle, while a rival drives towards it."""
+
+    def look(bench: Bench, tick: int, place: Point) -> None:
+        rival = estimate(max(1.0, rival_x_m - 1.5 * 0.05 * tick), 0.05)
+        rival.vx_m_s = -1.5
+        set_piece(bench, team)
+        put(bench, "world_model", localized=True, x_m=place.x_m, y_m=place.y_m, opponents=[rival], n_opponents=1)
+        put(bench, "drive_target", x_m=target_x_m, avoid_robots=True)
+
+    return nearest_m(way(Point(x_m, 0.0), late_ticks, ticks, look))
 
 
 @pytest.mark.parametrize(("team", "least_m"), [(game_state_t.TEAM_CYAN, 2.0), (game_state_t.TEAM_MAGENTA, 3.0)])
@@ -248,23 +280,32 @@ def test_robot_that_evades_stays_outside_the_circle(team: int, least_m: float) -
     assert at_set_piece(team, x_m, -x_m, rival_x_m=x_m + 9.0, ticks=120, late_ticks=2) >= least_m + 0.1
 
 
+@pytest.mark.parametrize("turns", [19, 22, 25, 28, 31])
+def test_robot_sent_back_on_its_way_stays_outside_the_circle(turns: int) -> None:
+    """It brakes for the ball of a set piece first, and turns to its new target afterwards."""
+
+    def look(bench: Bench, tick: int, place: Point) -> None:
+        x_m, y_m = (-3.0, -3.0) if tick < turns else (-1.0, 2.5)
+        set_piece(bench, game_state_t.TEAM_CYAN)
+        put(bench, "world_model", localized=True, x_m=place.x_m, y_m=place.y_m)
+        put(bench, "drive_target", x_m=x_m, y_m=y_m, avoid_robots=True)
+
+    places = way(Point(6.0, 1.0), 3, 140, look)
+    assert nearest_m(places) > 2.1
+    assert math.dist(places[-1], (-1.0, 2.5)) < 0.1
+
+
 def test_taker_is_sent_into_the_circle() -> None:
     assert at_set_piece(game_state_t.TEAM_CYAN, 3.0, 0.75, rival_x_m=20.0, ticks=80) == pytest.approx(0.75, abs=0.1)
 
 
 def test_robot_sent_to_the_other_side_of_a_ball_does_not_push_it() -> None:
     """On its way to a place beside the ball it gets one on the ball's other side."""
-    bench = Bench(Navigator, "cyan2/navigator")
-    place, heading_rad, nearest_m = Point(-2.5, 1.8), 0.0, 9.0
-    command, *waiting = (motor_command_t() for _ in range(3))
-    for tick in range(60):
+
+    def look(bench: Bench, tick: int, place: Point) -> None:
         put(bench, "world_model", localized=True, x_m=place.x_m, y_m=place.y_m, ball=ball_estimate_t(known=True))
-        put(bench, "odometry", vx_m_s=command.vx_m_s, vy_m_s=command.vy_m_s)
         put(bench, "drive_target", x_m=-0.27, y_m=0.7 if tick < 28 else -0.7, avoid_ball=True)
-        bench.iterate()
-        waiting.append(newest(bench, "motor_command"))
-        command = waiting.pop(0)
-        place, heading_rad = moved(place, heading_rad, command)
-        nearest_m = min(nearest_m, math.hypot(*place))
-    assert nearest_m > 0.38
-    assert math.dist(place, (-0.27, -0.7)) < 0.3
+
+    places = way(Point(-2.5, 1.8), 2, 70, look)
+    assert nearest_m(places) > 0.38
+    assert math.dist(places[-1], (-0.27, -0.7)) < 0.05
