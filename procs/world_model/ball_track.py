@@ -46,7 +46,7 @@ _LATE_S = 0.03  # time by which a track lags behind a ball that was kicked
 _OWN_BONUS = 4.0  # factor by which a sighting of the own camera outranks a mate's of the same variance
 _AT_ONCE_US = 20_000  # within this time, all robots see the ball at one place
 _MOVES_M_S = 1.0  # a slower ball that seems to jump was more likely seen by a robot that errs about its own place
-_MET = 0.003  # least probability that something has touched a ball that jumps
+_MET, _MET_UNSEEN = 0.003, 0.02  # least probability that something has touched a ball that jumps, also unseen
 _TURNS_M_S = 2.0  # a single sighting that changes the velocity by more turns the track
 _FLIES_M = 0.1  # a ball that seems to fly lower than this may lie on the ground, partly hidden
 _SAME_RAY_M = 0.3  # largest distance from the ray of a sighting at which a ball may be the thing seen
@@ -327,7 +327,8 @@ class BallTrack:
     def _may_be_touched(self) -> bool:
         """Whether a robot, a post or a wall may have touched a known ball a moment ago."""
         assert self.filter is not None
-        return bool(self.filter.weights[Mode.HANDLED] + self.filter.weights[Mode.HIT] >= _MET)
+        least = _MET if self.time_us - self.seen_us <= _LOST_US else _MET_UNSEEN
+        return bool(self.filter.weights[Mode.HANDLED] + self.filter.weights[Mode.HIT] >= least)
 
     def _strayed(self, sighting: Sighting) -> bool:
         """Returns whether one sighting elsewhere shows a known ball that no robot has seen for a while.
@@ -335,10 +336,9 @@ class BallTrack:
         A ball out of sight that nothing can have touched is still on its way: the sighting shows another thing, which
         lies on the ground.
         """
-        if self.time_us - self.seen_us <= _LOST_US:
-            return False
+        unseen = self.time_us - self.seen_us > _LOST_US
         turned = sighting.height_m > 0.0 or self._may_be_touched
-        return turned and self._velocity_to(sighting, self.time_us) is not None
+        return unseen and turned and self._velocity_to(sighting, self.time_us) is not None
 
     def _begin_if_struck(self, sighting: Sighting) -> bool:
         """Begins a new track with the sighting of a moving ball that met something; returns False if it met nothing.

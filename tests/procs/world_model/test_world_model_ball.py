@@ -165,6 +165,18 @@ def test_unseen_ball_jumps_only_if_it_can_have(contact: float, y_m: float, found
     assert tracker.track.state[:2] == pytest.approx(expected_m, abs=0.01)
 
 
+def test_unseen_ball_does_not_jump_as_it_was_touched_when_seen() -> None:
+    """What touched the ball while it was seen does not send it elsewhere afterwards."""
+    tracker = BallTracker()
+    for frame in range(18):
+        tracker.advance(PERIOD_S, 2.0, contact=1.0 if frame < 12 else 0.0)
+        if frame < 12:
+            tracker.see(Sighting("a", True, np.array((4.0 * PERIOD_S * frame, 0.0)), np.eye(2) * 0.02**2))
+    expected_m = tracker.track.state[:2]
+    tracker.see(Sighting("b", False, np.array((1.0, 3.0)), np.eye(2) * 0.1**2))
+    assert tracker.track.state[:2] == pytest.approx(expected_m, abs=0.01)
+
+
 def test_unseen_ball_is_found_elsewhere_with_two_sightings() -> None:
     tracker = out_of_sight(contact=0.0)
     for _ in range(2):
