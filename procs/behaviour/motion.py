@@ -62,7 +62,7 @@ def ahead_in_time(pose: Pose, velocity: Velocity, duration_s: float) -> Pose:
     return Pose(place, wrap_rad(pose.heading_rad + velocity.omega_rad_s * duration_s))
 
 
-def between(one: Velocity, other: Velocity) -> Velocity:
+def mean(one: Velocity, other: Velocity) -> Velocity:
     """Returns the mean of two velocities in the same frame."""
     return Velocity(*((a + b) / 2 for a, b in zip(one, other, strict=True)))
 

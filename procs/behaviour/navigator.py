@@ -213,7 +213,7 @@ class Navigator(Component):
         velocity = Velocity(measured.vx_m_s, measured.vy_m_s, measured.omega_rad_s)
         if not plausible(*velocity):
             velocity = STANDSTILL
-        return motion.ahead_in_time(here, motion.between(velocity, commanded), latency_s)
+        return motion.ahead_in_time(here, motion.mean(velocity, commanded), latency_s)
 
     def _velocity(self, target: drive_target_t, way: Way, turn_rad: float) -> Velocity:
         limits = self.config.limits
