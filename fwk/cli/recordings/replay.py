@@ -34,7 +34,7 @@ def replay(
     verify: Annotated[bool, typer.Option("--verify", help="compare every output; exit 1 at a difference")] = False,
     only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="only these components; repeatable")] = None,
     from_tick: Annotated[
-        int, typer.Option(min=1, metavar="N", help="report differences, or stop in the debugger, from this tick on")
+        int, typer.Option(min=1, metavar="N", help="compare outputs, or stop in the debugger, from this tick on")
     ] = 1,
     to_tick: Annotated[int | None, typer.Option(min=1, metavar="N", help="stop after this tick")] = None,
     debug: Annotated[
@@ -97,7 +97,7 @@ def _replayed(
     """Replays a log with `run` and says what was found; returns the exit code."""
     try:
         recording = _opened(log)
-        done = Replay(recording, only)
+        done = Replay(recording, only, from_tick)
         notes = list(_not_as_in_the_run(recording.plan))
         notes += [f"damaged: {part}" for part in changed(log)] if verify else ()
         for text in notes:
@@ -110,7 +110,7 @@ def _replayed(
     except RecordingError as error:
         typer.echo(f"error: {error}", err=True)
         return UNUSABLE
-    found = [difference for difference in done.differences if (difference.tick or 0) >= from_tick]
+    found = done.differences
     if as_json:
         typer.echo(json.dumps({**_plain(done, found, verify), "notes": notes}, indent=2))
         return DIFFERENT if verify and found else 0
@@ -125,7 +125,8 @@ def _replayed(
     if not verify:
         return 0
     if not found and not done.compared:
-        typer.echo("nothing was compared: none of these components wrote a message")
+        since = f" from tick {from_tick} on" if from_tick > 1 else ""
+        typer.echo(f"nothing was compared: none of these components wrote a message{since}")
         return 0
     if not found:
         typer.echo(f"equal: {done.compared} messages are byte for byte what was recorded")

@@ -49,17 +49,18 @@ class Replay:
         recording: the recording.
         only: names or patterns of components; none means all components that can be run again. A camera whose frames
             a chosen component reads is replayed with it, unless the recording has the frames.
+        from_tick: messages are compared from this tick on.
 
     Raises:
         RecordingError: no component has such a name, or none of them can be run again. While it runs: the log is
             damaged, or a component fails.
     """
 
-    def __init__(self, recording: Recording, only: Sequence[str] = ()) -> None:
+    def __init__(self, recording: Recording, only: Sequence[str] = (), from_tick: int = 0) -> None:
         plan = recording.plan
         self.recording = recording
         self.iterations = 0
-        self._comparison = OutputComparison()
+        self._comparison = OutputComparison(from_tick)
         self._messages = RecordedMessages(recording.path, self._comparison.lost)
         self._run_plan = plan
         self._guard = Guard()
@@ -292,14 +293,14 @@ class Replay:
                 data = self._messages.take_final(channel, self._incarnations.get(host, 1))
             else:
                 data = self._messages.take(channel, tick, step)
-            data = self._comparison.with_lost(channel, data, [written for _, written in made])
+            data = self._comparison.with_lost(channel, tick, data, [written for _, written in made])
             if data:
                 recorded[channel] = data
                 self._publish(channel, data)
         for life, written in made:
             for channel in life.writes:
                 ours = [data for name, data in written if name == channel]
-                self._comparison.compare(channel, recorded.get(channel, []), ours)
+                self._comparison.compare(channel, tick, recorded.get(channel, []), ours)
 
     def _publish(self, channel: str, data: list[bytes]) -> None:
         index = self._indices[channel]
