@@ -92,21 +92,24 @@ class Client:
         """
         self.send(verb, **fields)
         end_us = None if within_s is None else monotonic_us() + round(within_s * US_PER_S)
+        lacking = "answer"
         while True:
             try:
-                yield self._patient(end_us) if notices else self.answer(end_us)
+                yield self._patient(end_us, lacking) if notices else self.answer(end_us)
             except (TimeoutError, EOFError):
                 return
+            lacking = "further answer"
 
-    def _patient(self, end_us: int | None) -> dict[str, Any]:
-        """Returns the next answer; after a second without it, says what the run waits for."""
+    def _patient(self, end_us: int | None, lacking: str = "answer") -> dict[str, Any]:
+        """Returns the next answer; after a second without it, says what is `lacking`, and what the run waits for."""
         tell, first_us = notice.get(), monotonic_us() + _NOTICE_US
         if tell and (end_us is None or first_us < end_us):
             try:
                 return self.answer(first_us)
             except TimeoutError:
                 waits = self._waits_for()
-                tell(f"no answer yet; the run waits for {', '.join(waits)}" if waits else "no answer of the run yet")
+                so_far = f"yet; the run waits for {', '.join(waits)}" if waits else "of the run yet"
+                tell(f"no {lacking} {so_far}")
         return self.answer(end_us)
 
     def send(self, verb: str, **fields: Any) -> None:

@@ -4,7 +4,7 @@ import os
 import re
 import socket
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import pytest
 
@@ -64,33 +64,49 @@ def test_an_answer_that_lacks_a_key_is_refused_where_it_is_used(fake: Callable[[
             part["state"]
 
 
-def test_a_request_that_waits_names_what_the_run_waits_for(
-    bound: list[socket.socket], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(client, "_NOTICE_US", 50_000)
+def answers_late(bound: list[socket.socket], name: str, first: bytes, waits: bytes, rest: bytes) -> str:
+    """Serves a request; the `rest` of its answers follows once the run was asked what it `waits` for."""
     listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     bound.append(listening)
-    listening.bind(f"\0fwk-control-test-{os.getpid()}-slow")
+    listening.bind(f"\0fwk-control-test-{os.getpid()}-{name}")
     listening.listen()
 
     def serve() -> None:
         slow, _ = listening.accept()
         bound.append(slow)
-        slow.sendall(b'{"ok": true,')
+        slow.sendall(first)
         other, _ = listening.accept()
         bound.append(other)
-        other.sendall(b'{"ok": true, "waits_for": ["a/b"]}\n')
-        slow.sendall(b' "tick": 7}\n')
+        other.sendall(waits)
+        slow.sendall(rest)
 
-    serving = threading.Thread(target=serve, daemon=True)
-    serving.start()
-    said: list[str] = []
-    before = client.notice.set(said.append)
-    with Client(str(listening.getsockname().decode())) as run:
-        assert run.ask("pause")["tick"] == 7
-    serving.join()
+    threading.Thread(target=serve, daemon=True).start()
+    return str(listening.getsockname().decode())
+
+
+@pytest.fixture
+def said(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
+    """Notices of requests that have had no answer for 50 ms."""
+    monkeypatch.setattr(client, "_NOTICE_US", 50_000)
+    notices: list[str] = []
+    before = client.notice.set(notices.append)
+    yield notices
     client.notice.reset(before)
+
+
+def test_a_request_that_waits_names_what_the_run_waits_for(bound: list[socket.socket], said: list[str]) -> None:
+    waits = b'{"ok": true, "waits_for": ["a/b"]}\n'
+    with Client(answers_late(bound, "slow", b'{"ok": true,', waits, b' "tick": 7}\n')) as run:
+        assert run.ask("pause")["tick"] == 7
     assert said == ["no answer yet; the run waits for a/b"]
+
+
+def test_request_with_an_answer_lacks_a_further_one(bound: list[socket.socket], said: list[str]) -> None:
+    first, last = (f'{{"ok": true, "state": "{state}"}}\n'.encode() for state in ("accepted", "done"))
+    with Client(answers_late(bound, "further", first, b'{"ok": true, "waits_for": []}\n', last)) as run:
+        answers = run.follow("call", 10.0, notices=True)
+        assert [next(answers)["state"] for _ in range(2)] == ["accepted", "done"]
+    assert said == ["no further answer of the run yet"]
 
 
 def test_root_may_use_the_runs_of_all_users(monkeypatch: pytest.MonkeyPatch) -> None:
