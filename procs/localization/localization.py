@@ -23,6 +23,7 @@ from procs.model.frames import Floats, rotation
 from procs.model.geometry import plausible, wrap_rad
 from procs.model.realism import Realism
 from procs.model.robot import FASTEST_RAD_S
+from procs.model.units import heading_mistake
 from procs.vision.calibration import MirrorConfig
 
 _SHORT_S = 0.05  # up to this age of an exposure, the velocity of the last tick describes the motion well enough
@@ -74,13 +75,15 @@ class LocalizationConfig(Config):
     @field_validator("start_heading_rad")
     @classmethod
     def _start_is_whole(cls, heading_rad: float | None, info: ValidationInfo) -> float | None:
-        """Refuses an incomplete start, and one outside the walls."""
+        """Refuses an incomplete start, one outside the walls, and a heading in degrees."""
         if {"field", "start_x_m", "start_y_m"} <= info.data.keys():
             x_m, y_m, field = info.data["start_x_m"], info.data["start_y_m"], info.data["field"]
             if len({value is None for value in (x_m, y_m, heading_rad)}) > 1:
                 raise ValueError("start_x_m, start_y_m and start_heading_rad belong together; give all three or none")
             if x_m is not None and not field.in_field(x_m, y_m, field.border_m):
                 raise ValueError(f"start_x_m and start_y_m give ({x_m:g}, {y_m:g}), which is outside the walls")
+        if heading_rad is not None and (mistake := heading_mistake(heading_rad)):
+            raise ValueError(f"start_{mistake}")
         return heading_rad
 
     @field_validator("good_score")

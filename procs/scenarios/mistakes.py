@@ -3,7 +3,6 @@
 A mistake begins with the path of its value: `commands.0: place_ball: ...`.
 """
 
-import math
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -15,6 +14,7 @@ from lcmtypes.soccer import place_ball_t
 from procs.model.field import Field, Point
 from procs.model.right_name import right_name
 from procs.model.robot import PLAYERS, player_of, team_of
+from procs.model.units import heading_mistake
 from procs.referee.names import Names
 from procs.referee.orders import mistake_in
 from procs.scenarios.action import Action, field_mistakes
@@ -24,7 +24,6 @@ from procs.simulation.physics.room import Room
 from procs.simulation.simulator import SimulatorConfig
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
-_TURN_RAD = 2 * math.pi
 _DIGITS_MAX = 9
 
 
@@ -106,7 +105,7 @@ def _refusals(action: Action, everyone: Sequence[str], config: SimulatorConfig) 
     elif action.kind == "referee":
         yield mistake_in(command.name, command.team, robot, everyone, Names(config.players))
     elif action.kind == "place_robot":
-        yield robot_mistake(command, everyone, config.field) or _heading_mistake(command.heading_rad)
+        yield robot_mistake(command, everyone, config.field) or heading_mistake(command.heading_rad)
     elif action.kind == "place_ball":
         yield ball_mistake(command, config.field)
 
@@ -122,12 +121,7 @@ def simulator_settings(stated: Mapping[str, Any]) -> SimulatorConfig:
 def place_mistakes(places: Mapping[str, Sequence[float]], config: SimulatorConfig) -> Iterator[str]:
     """Yields which robots would stand outside the walls, in a goal, or in each other."""
     for name, (_, _, heading_rad) in places.items():
-        if mistake := _heading_mistake(heading_rad):
+        if mistake := heading_mistake(heading_rad):
             yield f"places.{name}: {mistake}"
     starts = {name: Point(x_m, y_m) for name, (x_m, y_m, _) in places.items()}
     yield from (f"places: {each}" for each in Room(config.field).mistakes_in(starts, config.robot.radius_m))
-
-
-def _heading_mistake(heading_rad: float) -> str:
-    right = f"it should be from {-_TURN_RAD:.2f} to {_TURN_RAD:.2f}, in radians"
-    return "" if abs(heading_rad) < _TURN_RAD + 0.01 else f"heading_rad is {heading_rad:g}; {right}"

@@ -27,7 +27,7 @@ from procs.model.field import Field, Point
 from procs.model.kinematics import Wheels
 from procs.model.realism import Realism
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel, player_of
-from procs.model.units import US_PER_S
+from procs.model.units import US_PER_S, heading_mistake
 from procs.model.wheel_messages import WheelReader
 from procs.simulation.field_crew import FieldCrew
 from procs.simulation.physics.kick_mechanism import KickerCommand
@@ -114,11 +114,14 @@ class SimulatorConfig(Config):
     @field_validator("starts")
     @classmethod
     def _possible(cls, starts: Starts, info: ValidationInfo) -> Starts:
-        """Refuses starts where no robot has room; field and robot have been checked before."""
+        """Refuses starts where no robot has room, and headings in degrees; field and robot have been checked before."""
+        found = {robot: heading_mistake(heading_rad) for robot, (_, _, heading_rad) in starts.items()}
+        mistakes = [f"{robot}: {mistake}" for robot, mistake in found.items() if mistake]
         if {"field", "robot"} <= info.data.keys():
             places = {robot: Point(x_m, y_m) for robot, (x_m, y_m, _) in starts.items()}
-            if mistakes := list(Room(info.data["field"]).mistakes_in(places, info.data["robot"].radius_m)):
-                raise ValueError("; ".join(mistakes))
+            mistakes += Room(info.data["field"]).mistakes_in(places, info.data["robot"].radius_m)
+        if mistakes:
+            raise ValueError("; ".join(mistakes))
         return starts
 
 

@@ -103,16 +103,17 @@ def test_incomplete_start_pose_is_refused() -> None:
         Bench(Localization, start_x_m=1.0)
 
 
+def start_at(x_m: float, y_m: float, heading_rad: float) -> tuple[str, ...]:
+    values = {"x_m": x_m, "y_m": y_m, "heading_rad": heading_rad}
+    return tuple(f"*/localization.start_{name}={value}" for name, value in values.items())
+
+
 @pytest.mark.parametrize(
     ("settings", "mistake"),
     [
         (("*/localization.start_heading_rad=1",), "belong together; give all three or none"),
-        (
-            tuple(
-                f"*/localization.start_{name}={value}" for name, value in (("x_m", 100), ("y_m", 0), ("heading_rad", 0))
-            ),
-            "start_x_m and start_y_m give (100, 0), which is outside the walls",
-        ),
+        (start_at(100, 0, 0), "start_x_m and start_y_m give (100, 0), which is outside the walls"),
+        (start_at(1, 0, 90), "start_heading_rad is 90; it should be from -6.28 to 6.28, in radians"),
         (("*/localization.lost_score=0.9",), "good_score of 0.5 should be at least lost_score, which is 0.9"),
     ],
 )

@@ -79,6 +79,10 @@ robots:
             "world/simulator.starts={cyan1: [0, 0]}",
             "'starts.cyan1' is [0, 0]; it should be the numbers x_m, y_m and heading_rad, such as [-1.0, 0.5, 0.0]",
         ),
+        (
+            "world/simulator.starts={cyan1: [1, 0, 90]}",
+            "cyan1: heading_rad is 90; it should be from -6.28 to 6.28, in radians",
+        ),
         ("world/simulator.starts={cyan7: [-1, 0, 0]}", "starts: no robot 'cyan7'; there are: cyan1, cyan2, "),
         ("world/simulator.stuck_wheels={cyan7: [1]}", "stuck_wheels: no robot 'cyan7'; there are: cyan1, cyan2, "),
         ("world/simulator.silent_imus=[cyan7]", "silent_imus: no robot 'cyan7'; there are: cyan1, cyan2, "),
