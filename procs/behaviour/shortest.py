@@ -32,17 +32,20 @@ def first_turn(start: Point, target: Point, discs: Sequence[Disc], possible: Cal
 
 
 def _shortest(start: Point, target: Point, discs: Sequence[Disc], possible: Callable[[Point], bool]) -> list[Point]:
-    """Returns the places of the shortest way (A*), with both ends; empty if there is none."""
+    """Returns the places of the shortest way (A*), with both ends; empty if there is none.
+
+    The search looks for discs on a leg when it takes the leg up; it never takes up most of them.
+    """
     open_places = [target, *(place for place in _beside(discs) if possible(place))]
     waiting: list[tuple[float, float, Point, Point | None]] = [(math.dist(start, target), 0.0, start, None)]
     before: dict[Point, Point | None] = {}
     while waiting and target not in before:
         _, way_m, place, came_from = heapq.heappop(waiting)
-        if place in before:
+        if place in before or (came_from and any(_covers(disc, came_from, place) for disc in discs)):
             continue
         before[place] = came_from
         for following in open_places:
-            if following not in before and not any(_covers(disc, place, following) for disc in discs):
+            if following not in before:
                 there_m = way_m + math.dist(place, following)
                 heapq.heappush(waiting, (there_m + math.dist(following, target), there_m, following, place))
     way, place_before = [], target if target in before else None
