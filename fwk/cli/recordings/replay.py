@@ -18,7 +18,6 @@ from fwk.engine.failures import ComponentFailedError
 from fwk.model.errors import hint
 from fwk.model.plan import Plan
 from fwk.plan.what_ran import blas_kernel, changed_modules, other_kernel
-from fwk.recording.difference import Difference
 from fwk.recording.differing import Differing, differing, lines_of
 from fwk.recording.log_index import changed
 from fwk.recording.replay.recording import Recording, RecordingError
@@ -112,7 +111,7 @@ def _replayed(
         return UNUSABLE
     found = done.differences
     if as_json:
-        typer.echo(json.dumps({**_plain(done, found, verify), "notes": notes}, indent=2))
+        typer.echo(json.dumps({**_plain(done, verify), "notes": notes}, indent=2))
         return DIFFERENT if verify and found else 0
     typer.echo(f"{done.iterations} iterations replayed")
     for name, reason in done.left_out.items():
@@ -131,7 +130,7 @@ def _replayed(
     if not found:
         typer.echo(f"equal: {done.compared} messages are byte for byte what was recorded")
         return 0
-    rows = _differing(done, found)
+    rows = _differing(done)
     typer.echo(f"different: {len(found)} of {done.compared} messages; the first is")
     typer.echo(f"  {rows[0].component}: {rows[0].first}")
     for line in lines_of(rows):
@@ -139,20 +138,20 @@ def _replayed(
     return DIFFERENT
 
 
-def _differing(done: Replay, found: list[Difference]) -> list[Differing]:
+def _differing(done: Replay) -> list[Differing]:
     """Returns the components that write something else than in the run."""
-    named = [replace(difference, names=("the recording", "the replay")) for difference in found]
+    named = [replace(difference, names=("the recording", "the replay")) for difference in done.differences]
     return differing(named, done.recording.plan)
 
 
-def _plain(done: Replay, found: list[Difference], verify: bool) -> dict[str, object]:
+def _plain(done: Replay, verify: bool) -> dict[str, object]:
     lost = {channel: sorted(numbers) for channel, numbers in done.lost.items() if numbers}
     about = {"iterations": done.iterations, "left_out": done.left_out, "lost": lost, "verified": verify}
     if not verify:
         return about
-    rows = [row.plain() for row in _differing(done, found)]
+    rows = [row.plain() for row in _differing(done)]
     first = {"component": rows[0]["component"], **rows[0]["first"]} if rows else None
-    counts = {"equal": not found, "compared": done.compared, "differences": len(found)}
+    counts = {"equal": not done.differences, "compared": done.compared, "differences": len(done.differences)}
     return {**about, **counts, "first": first, "components": rows}
 
 

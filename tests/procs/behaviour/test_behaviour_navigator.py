@@ -282,7 +282,7 @@ def test_robot_that_evades_stays_outside_the_circle(team: int, least_m: float) -
 
 @pytest.mark.parametrize("turns", [19, 22, 25, 28, 31])
 def test_robot_sent_back_on_its_way_stays_outside_the_circle(turns: int) -> None:
-    """It brakes for the ball of a set piece first, and turns to its new target afterwards."""
+    """The robot brakes for the ball of a set piece first, and turns to its new target afterwards."""
 
     def look(bench: Bench, tick: int, place: Point) -> None:
         x_m, y_m = (-3.0, -3.0) if tick < turns else (-1.0, 2.5)

@@ -145,11 +145,11 @@ def test_resting_ball_does_not_jump_to_one_sighting() -> None:
     assert tracker.track.state == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=0.05)
 
 
-def out_of_sight(contact: float) -> BallTracker:
-    """Returns a ball that rolled away at 4 m/s, and that no robot has seen for half a second."""
+def out_of_sight(contact: float, unseen: int = 10, touched_unseen: bool = True) -> BallTracker:
+    """Returns a ball that rolled away at 4 m/s, and that no robot has seen for `unseen` ticks."""
     tracker = BallTracker()
-    for frame in range(22):
-        tracker.advance(PERIOD_S, 2.0, contact=contact)
+    for frame in range(12 + unseen):
+        tracker.advance(PERIOD_S, 2.0, contact=contact if frame < 12 or touched_unseen else 0.0)
         if frame < 12:
             place_m = np.array((4.0 * PERIOD_S * frame, 0.0))
             tracker.see(Sighting("a", True, place_m, np.eye(2) * 0.02**2))
@@ -166,12 +166,8 @@ def test_unseen_ball_jumps_only_if_it_can_have(contact: float, y_m: float, found
 
 
 def test_unseen_ball_does_not_jump_as_it_was_touched_when_seen() -> None:
-    """What touched the ball while it was seen does not send it elsewhere afterwards."""
-    tracker = BallTracker()
-    for frame in range(18):
-        tracker.advance(PERIOD_S, 2.0, contact=1.0 if frame < 12 else 0.0)
-        if frame < 12:
-            tracker.see(Sighting("a", True, np.array((4.0 * PERIOD_S * frame, 0.0)), np.eye(2) * 0.02**2))
+    """A contact while robots saw the ball explains no other place once they do not see it."""
+    tracker = out_of_sight(1.0, unseen=6, touched_unseen=False)
     expected_m = tracker.track.state[:2]
     tracker.see(Sighting("b", False, np.array((1.0, 3.0)), np.eye(2) * 0.1**2))
     assert tracker.track.state[:2] == pytest.approx(expected_m, abs=0.01)
