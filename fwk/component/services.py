@@ -123,8 +123,8 @@ class Serves(Generic[Q, R]):
     `for request in self.path: request.reply.length_m = 2.0; request.done()`
 
     Iterating takes requests out of the queue, each once, in the order of tick, stage, sender and sequence number.
-    Requests that are not taken stay in the queue. After a restart, requests sent before the restart fail, because the
-    previous process may have begun them.
+    Requests that are not taken stay in the queue. After a restart, requests that are visible in the first iteration
+    fail, because the previous process may have begun them.
     """
 
     def __init__(

@@ -120,15 +120,42 @@ def test_fwk_call_refuses_a_component_that_is_stopped(launch: Launch, folder: Pa
     assert begun(Recording(run.end())) == [("outside", 1, 2.0)]
 
 
-def test_fwk_call_waits_for_a_component_that_restarts(launch: Launch, folder: Path, ports: PortBlock) -> None:
+def restarts_late(folder: Path) -> None:
+    """Gives a test time for a call before the lifter restarts."""
     file = folder / "launch/lift.yaml"
     file.write_text(file.read_text().replace('Lifter" }', 'Lifter", restart: { backoff_s: 8.0 } }'))
+
+
+def wait_for_state(run: Steered, state: str) -> None:
+    run.launched.until_true(lambda: run.component("r/lifter")["state"] == state, f"state {state}")
+
+
+def test_fwk_call_waits_for_a_component_that_restarts(launch: Launch, folder: Path, ports: PortBlock) -> None:
+    """The lifter ends between two ticks, so the next one begins with its restart: the call was sent before."""
+    restarts_late(folder)
     run = started(launch, ports)
+    run.fwk("pause")
     os.kill(run.launched.host("r/lifter"), signal.SIGKILL)
-    run.launched.until_true(lambda: run.json("status", "r/lifter")["components"][0]["state"] == "waiting", "its death")
+    wait_for_state(run, "waiting")
+    run.ask("resume")
     said = run.fwk("call", "r/lift", "height_m=1", "--timeout", "100", code=1)
     assert "r/lifter was started after it had been sent" in said
-    run.end()
+    assert begun(Recording(run.end())) == []
+
+
+def test_a_component_that_restarts_in_a_tick_is_called_in_the_next(
+    launch: Launch, folder: Path, ports: PortBlock
+) -> None:
+    """The lifter ends in its iteration and restarts in the same tick, before the call becomes visible."""
+    restarts_late(folder)
+    run = started(launch, ports)
+    lifter = run.launched.host("r/lifter")
+    os.kill(lifter, signal.SIGSTOP)
+    run.launched.until_true(lambda: "r/lifter" in run.ask("status")["waits_for"], "a tick that waits for it")
+    os.kill(lifter, signal.SIGKILL)
+    wait_for_state(run, "waiting")
+    assert "r/lift: done, tick " in run.fwk("call", "r/lift", "height_m=1", "--timeout", "100")
+    assert begun(Recording(run.end())) == [("outside", 1, 1.0)]
 
 
 def test_an_unanswered_call_tells_that_the_run_is_paused(launch: Launch, folder: Path, ports: PortBlock) -> None:
