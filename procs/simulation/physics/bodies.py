@@ -22,8 +22,10 @@ class Bodies:
 
     def __init__(self, space: pymunk.Space) -> None:
         self._space = space
-        self._read = batch.Buffer()
         self._count = len(space.bodies)
+        self._numbers, self._read = array("d", bytes(2 * _STATE.size * (self._count + 1))), batch.Buffer()
+        self._read.set_float_buf(self._numbers)  # twice as long as needed, so that the engine never makes a longer one
+        self._moving = memoryview(self._numbers).cast("B")[: _STATE.size * self._count]
         # The engine comes last to the body of all static shapes, which no force moves.
         self._forces = array("d", [0.0] * _NUMBERS * (self._count + 1))
         self._written = batch.Buffer()
@@ -34,7 +36,7 @@ class Bodies:
         """Returns the states of all bodies."""
         self._read.clear()
         batch.get_space_bodies(self._space, _STATE_FIELDS, self._read)
-        return list(_STATE.iter_unpack(self._read.float_buf()))[: self._count]
+        return list(_STATE.iter_unpack(self._moving))
 
     def push(self, effects: list[float]) -> None:
         """Sets force (x and y in N, world frame) and torque (Nm) of each body for the coming step, body by body."""

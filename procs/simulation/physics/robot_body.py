@@ -8,7 +8,6 @@ from procs.model.geometry import wrap_rad
 from procs.model.kinematics import Velocity
 from procs.model.robot import RobotModel
 from procs.simulation.physics.arena import HULL, HULL_FILTER, ROBOT, ROBOT_FILTER
-from procs.simulation.physics.bodies import State
 from procs.simulation.physics.drive import Drive
 from procs.simulation.physics.settings import ContactSettings
 from procs.simulation.physics.start_places import Pose
@@ -72,24 +71,6 @@ class Robot:
             return ahead_m - self.mouth_x_m
         beside_mouth = aside_m * self.mouth_x_m <= half_mouth_m * ahead_m
         return math.hypot(ahead_m - self.mouth_x_m, aside_m - half_mouth_m) if beside_mouth else round_m
-
-    def move(self, now_us: int, duration_s: float, state: State) -> tuple[float, float, float]:
-        """Turns the motors for the coming step of the physics engine.
-
-        Args:
-            now_us: logical time at the beginning of the step.
-            duration_s: duration of the step.
-            state: present state of the robot's body.
-
-        Returns:
-            Force of the wheels along x and y of the world frame in N, and their torque in Nm.
-        """
-        _, _, angle_rad, vx, vy, omega_rad_s = state
-        cos, sin = math.cos(angle_rad), math.sin(angle_rad)
-        force_x, force_y, torque = self.drive.turn(
-            now_us, duration_s, cos * vx + sin * vy, cos * vy - sin * vx, omega_rad_s
-        )
-        return cos * force_x - sin * force_y, sin * force_x + cos * force_y, torque
 
 
 def _hull(radius_m: float, half_rad: float) -> list[tuple[float, float]]:

@@ -230,7 +230,7 @@ class World:
         effects = [0.0, 0.0, 0.0]  # on the ball
         for (name, robot, kicker), state in zip(self._in_order, states[1:], strict=True):
             x_m, y_m = ball_x_m - state[0], ball_y_m - state[1]
-            effects += robot.move(now_us, duration_s, state)
+            effects += robot.drive.turn(now_us, duration_s, state)
             push = kicker.act(now_us, duration_s, ball if x_m * x_m + y_m * y_m <= self._near_m2 else None)
             if push is not None:
                 pushes[name] = push

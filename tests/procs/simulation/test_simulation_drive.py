@@ -77,6 +77,21 @@ def test_measured_speeds_are_the_mean_over_the_tick() -> None:
     assert robot.drive.measured_m_s() == robot.drive.wheels_m_s
 
 
+def test_measured_speeds_are_the_way_of_commands_and_stuck_wheels() -> None:
+    world = one_robot(Noise(drive_delay_s=0.03), Pose(0.0, 0.0, 0.0))
+    motors, step_us, way_m = world.robots["cyan1"].drive, 500, np.zeros(3)
+    motors.measured_m_s()
+    for step in range(400):
+        if step % 40 == 0:
+            motors.command((1.0 - 0.2 * (step // 40), 0.5, -2.0), world.time_us)
+        if step in (100, 300):
+            motors.stuck = frozenset({1} if step == 100 else ())
+        before_m_s = np.array(motors.wheels_m_s)
+        world.advance(step_us)
+        way_m += (before_m_s + motors.wheels_m_s) / 2 * step_us / 1e6
+    assert motors.measured_m_s() == pytest.approx(way_m / 0.2, abs=1e-4)
+
+
 def test_command_that_is_not_a_number_stops_the_wheels() -> None:
     world = one_robot()
     drive(world, Velocity(1.0, 0.0, 0.0), 20)
