@@ -9,7 +9,6 @@ from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import ball_percept_t, game_state_t, team_message_t
 from procs.model.frames import Floats
 from procs.model.units import US_PER_S
-from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.contact import RobotRow, Robots
 from procs.world_model.empty_mouth import EmptyMouth
@@ -19,6 +18,7 @@ from procs.world_model.own_view import OwnView
 from procs.world_model.placed_ball import PlacedBall
 from procs.world_model.seen import Seen
 from procs.world_model.settings import STALE_S, WorldModelConfig, counts
+from procs.world_model.sighting import Sighting
 from procs.world_model.team import Mate
 from procs.world_model.told import IN_MOUTH_M, ball_of, held_by
 from procs.world_model.walls import Walls

@@ -37,19 +37,18 @@ from procs.world_model.ball_modes import NO_CONTACT, Contact, Mode
 from procs.world_model.contact import Robots
 from procs.world_model.flight import Flight
 from procs.world_model.seen import Seen
+from procs.world_model.sighting import Sighting
 from procs.world_model.told import IN_MOUTH_M
 from procs.world_model.walls import Walls
 
 _LOST_US = 250_000  # a ball that no robot has seen for longer may have met something
 _USUAL_M_S = 11.0  # speed of a ball that was kicked hard
 _LATE_S = 0.03  # time by which a track lags behind a ball that was kicked
-_OWN_BONUS = 4.0  # factor by which a sighting of the own camera outranks a mate's of the same variance
 _AT_ONCE_US = 20_000  # within this time, all robots see the ball at one place
 _MOVES_M_S = 1.0  # a slower ball that seems to jump was more likely seen by a robot that errs about its own place
 _MET, _MET_UNSEEN = 0.003, 0.02  # least probability that something has touched a ball that jumps, also unseen
 _TURNS_M_S = 2.0  # a single sighting that changes the velocity by more turns the track
 _FLIES_M = 0.1  # a ball that seems to fly lower than this may lie on the ground, partly hidden
-_SAME_RAY_M = 0.3  # largest distance from the ray of a sighting at which a ball may be the thing seen
 _BELOW_M = 0.3  # largest deviation of a flying ball's place at which something on the ground is right below it
 _NEVER_US = -(1 << 60)
 _BESIDE_SPOT_M, _LIES_M_S = 0.6, 0.3  # a ball this near to the spot and this slow may lie beside a robot there
@@ -57,50 +56,6 @@ _SPOT_M = 0.1  # deviation of the place of a ball that was put on a spot
 _HELD_M_S = 0.1  # deviation of a held ball's velocity in the mouth
 _ELSEWHERE_M = 0.3  # a held ball further from the track begins a new one ...
 _BEGINS_M = 0.05  # ... with this deviation of its place, besides that of the pose
-_SEEMS_FURTHER = 0.06  # share of its distance by which a low flying ball that seems to lie appears too far away
-
-
-@dataclass(frozen=True)
-class Sighting:
-    """Position of the ball as a robot saw it: world frame, captured `age_s` ago."""
-
-    robot: str
-    own: bool
-    """Whether the own camera saw it, not that of a mate."""
-    position_m: Floats
-    """(2)."""
-    covariance_m2: Floats
-    """(2, 2) of the position."""
-    age_s: float = 0.0
-    height_m: float = 0.0
-    """Height of the ball's lowest point; 0 for a ball that seems to lie on the ground."""
-    observer_m: Floats | None = None
-    """(2): place of the robot, if it is known."""
-
-    def of_flying_m2(self) -> Floats:
-        """Returns the covariance (2, 2) of the place of a ball that flies, perhaps so low that it seems to lie."""
-        if self.height_m > 0.0 or self.observer_m is None:
-            return self.covariance_m2
-        too_far_m = _SEEMS_FURTHER * (self.position_m - self.observer_m)
-        return self.covariance_m2 + np.outer(too_far_m, too_far_m)
-
-    def may_be_nearer(self, place_m: tuple[float, float]) -> bool:
-        """Returns whether the ball that seems to lie here may be one in the air, nearer on the same ray.
-
-        A flying ball that a robot partly hides looks as large as a ball on the ground behind it.
-        """
-        if self.height_m > 0.0 or self.observer_m is None:
-            return False
-        seems_x_m, seems_y_m = (self.position_m - self.observer_m).tolist()
-        is_x_m, is_y_m = (place_m - self.observer_m).tolist()
-        distance_m, along_m2 = math.hypot(seems_x_m, seems_y_m), seems_x_m * is_x_m + seems_y_m * is_y_m
-        across_m2 = abs(seems_x_m * is_y_m - seems_y_m * is_x_m)
-        return bool(0.0 < along_m2 < distance_m**2 and across_m2 < _SAME_RAY_M * distance_m)
-
-    @property
-    def weakness(self) -> float:
-        """Rank of the source; a smaller one is better."""
-        return float(self.covariance_m2[0, 0] + self.covariance_m2[1, 1]) / (_OWN_BONUS if self.own else 1.0)
 
 
 @dataclass(frozen=True)
@@ -324,10 +279,15 @@ class BallTrack:
         self.doubts = (*self.doubts, (self.time_us, sighting))
 
     @property
+    def _unseen(self) -> bool:
+        """Whether no robot has seen the ball for a while."""
+        return self.time_us - self.seen_us > _LOST_US
+
+    @property
     def _may_be_touched(self) -> bool:
         """Whether a robot, a post or a wall may have touched a known ball a moment ago."""
         assert self.filter is not None
-        least = _MET if self.time_us - self.seen_us <= _LOST_US else _MET_UNSEEN
+        least = _MET_UNSEEN if self._unseen else _MET
         return bool(self.filter.weights[Mode.HANDLED] + self.filter.weights[Mode.HIT] >= least)
 
     def _strayed(self, sighting: Sighting) -> bool:
@@ -336,9 +296,10 @@ class BallTrack:
         A ball out of sight that nothing can have touched is still on its way: the sighting shows another thing, which
         lies on the ground.
         """
-        unseen = self.time_us - self.seen_us > _LOST_US
+        if not self._unseen:
+            return False
         turned = sighting.height_m > 0.0 or self._may_be_touched
-        return unseen and turned and self._velocity_to(sighting, self.time_us) is not None
+        return turned and self._velocity_to(sighting, self.time_us) is not None
 
     def _begin_if_struck(self, sighting: Sighting) -> bool:
         """Begins a new track with the sighting of a moving ball that met something; returns False if it met nothing.

@@ -15,10 +15,11 @@ from procs.model.frames import Floats
 from procs.model.robot import ROBOT
 from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
-from procs.world_model.ball_track import BallTrack, Sighting, Step
+from procs.world_model.ball_track import BallTrack, Step
 from procs.world_model.contact import Robots
 from procs.world_model.flight import Flight
 from procs.world_model.seen import Seen
+from procs.world_model.sighting import Sighting
 from procs.world_model.walls import Walls
 
 _KEPT_US = 400_000  # older inputs are not used

@@ -5,8 +5,8 @@ from collections import deque
 from collections.abc import Sequence
 
 from procs.model.units import US_PER_S
-from procs.world_model.ball_track import Sighting
 from procs.world_model.frame_pace import FramePace
+from procs.world_model.sighting import Sighting
 
 _FRAMES = 2  # number of frames that have to agree; a single one may show another thing
 _NEWEST_S = 0.4  # the newest frame counts for so long

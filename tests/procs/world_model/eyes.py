@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from procs.model.frames import rotation
-from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
+from procs.world_model.sighting import Sighting
 
 Floats = NDArray[np.float64]
 PERIOD_S = 0.05

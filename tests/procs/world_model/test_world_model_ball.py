@@ -9,8 +9,8 @@ import pytest
 from procs.model.ball import BALL
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_modes import Contact
-from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
+from procs.world_model.sighting import Sighting
 from tests.procs.world_model.eyes import PERIOD_S, ROLLING_M_S2, ROLLING_NOISE_M2_S3, Eye, Floats, follow, rms, rolling
 
 

@@ -8,10 +8,10 @@ import pytest
 from procs.model.ball import BALL
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_modes import NO_CONTACT, Contact
-from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.contact import RobotRow, Robots
 from procs.world_model.flight import Flight
+from procs.world_model.sighting import Sighting
 
 TOUCH_M = 0.33
 ROBOT_M2 = 0.03**2

@@ -8,8 +8,8 @@ import pytest
 from lcmtypes.soccer import team_message_t
 from procs.model.ball import BALL
 from procs.model.robot import ROBOT, RobotModel
-from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
+from procs.world_model.sighting import Sighting
 from tests.procs.world_model.team_on_bench import Robot
 
 FRAME_S = 0.08

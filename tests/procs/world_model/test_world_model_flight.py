@@ -10,9 +10,9 @@ import pytest
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
 from procs.simulation.physics.ball_body import GRAVITY_M_S2
-from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.flight import Flight
+from procs.world_model.sighting import Sighting
 from procs.world_model.walls import Walls
 from tests.procs.world_model.eyes import PERIOD_S, Floats
 from tests.procs.world_model.team_on_bench import Robot, team

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
+from procs.world_model.sighting import Sighting
 from tests.procs.world_model.eyes import PERIOD_S, Floats
 
 SPEED_M_S = 5.0

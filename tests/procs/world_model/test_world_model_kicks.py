@@ -8,10 +8,10 @@ import pytest
 
 from procs.model.ball import BALL
 from procs.simulation.physics.rolling import RollingFriction
-from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.contact import Robots
 from procs.world_model.seen import Seen
+from procs.world_model.sighting import Sighting
 from tests.procs.world_model.eyes import PERIOD_S, Eye, Floats, rms, rolling
 
 

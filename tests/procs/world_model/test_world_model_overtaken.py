@@ -10,9 +10,9 @@ from fwk.testing import Bench
 from lcmtypes.soccer import obstacle_t, team_message_t, world_model_t
 from procs.model.robot import ROBOT
 from procs.model.units import US_PER_S
-from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.kicks import Kicks
+from procs.world_model.sighting import Sighting
 from procs.world_model.told import mate_of
 from procs.world_model.world_model import WorldModel
 

@@ -10,8 +10,8 @@ from procs.model.field import Field
 from procs.simulation.physics.rolling import RollingFriction
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_modes import Mode
-from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
+from procs.world_model.sighting import Sighting
 from procs.world_model.walls import Walls
 from tests.procs.world_model.eyes import PERIOD_S, ROLLING_M_S2, Eye, Floats
 
