@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from fwk.component.calls import Call, Calls
     from fwk.component.channels import Reads, Writes, channel
     from fwk.component.component import Component
-    from fwk.component.config import Config
+    from fwk.component.config import Alike, Config
     from fwk.component.each import Each
     from fwk.component.former_names import CallsEach as CallsEach
     from fwk.component.former_names import Command as Command
@@ -51,7 +51,7 @@ _MODULES = {
     "fwk.component.calls": ("Call", "Calls"),
     "fwk.component.channels": ("Reads", "Writes", "channel"),
     "fwk.component.component": ("Component",),
-    "fwk.component.config": ("Config",),
+    "fwk.component.config": ("Alike", "Config"),
     "fwk.component.each": ("Each",),
     "fwk.component.images": ("FrameError", "Image", "VisionMaster"),
     "fwk.component.log": ("Logger",),
@@ -72,6 +72,7 @@ _FORMER = (
 """Former names, which earlier components and their recordings use."""
 
 __all__ = [
+    "Alike",
     "Aspect",
     "Blackboard",
     "BlackboardEvent",

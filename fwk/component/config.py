@@ -9,6 +9,15 @@ LOG_LEVEL = "log_level"
 LogLevel = Literal["debug", "info", "warning", "error"]
 
 
+class Alike:
+    """Marks the type of a setting that is the same in all components of a system, which `fwk check` ensures.
+
+    ```python
+    Players = Annotated[dict[str, int], Alike]
+    ```
+    """
+
+
 class Config(BaseModel):
     """Base class of settings: one field a line, with its unit and meaning as a docstring below.
 

@@ -11,6 +11,7 @@ from fwk.model.plan import ComponentPlan, Plan
 from fwk.model.ports import Ports
 from fwk.model.public_url import UrlError, parse_url
 from fwk.model.selection import chosen, groups_of
+from fwk.plan.alike import check_alike
 from fwk.plan.cameras import check_cameras
 from fwk.plan.channel_settings import check_with_channels
 from fwk.plan.files.folders import folders_of, join
@@ -153,6 +154,7 @@ class _Loading:
             **shared,
         )
         check_clock(components, shared["clock"], problems)
+        check_alike(components, problems)
         check_cameras(components, whole.channels, problems)
         check_with_channels(components, whole.ports, problems)
         self._check_ports(made)

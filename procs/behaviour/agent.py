@@ -22,7 +22,7 @@ from procs.behaviour.steady_role import SteadyRole
 from procs.behaviour.tactics import Tactics, leave_field
 from procs.behaviour.view import View, view_of
 from procs.model.ball import BALL, BallModel
-from procs.model.field import Field, Point
+from procs.model.field import Field, MatchField, Point
 from procs.model.geometry import wrap_rad
 from procs.model.kicker import tells_held
 from procs.model.robot import ABSENT, CYAN, MAGENTA, PLAYERS, ROBOT, Players, RobotModel, player_of
@@ -35,7 +35,7 @@ _EXPIRES_S = 1.0
 class AgentConfig(Config):
     """Settings of the decisions."""
 
-    field: Field = Field()
+    field: MatchField = Field()
     """Measures of the field."""
     players: Players = dict(PLAYERS)
     """Team and number of each robot."""

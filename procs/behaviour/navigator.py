@@ -16,7 +16,7 @@ from procs.behaviour.permitted import Permitted, is_field_player
 from procs.behaviour.velocity_obstacles import safe_velocity
 from procs.behaviour.view import Frame
 from procs.model.ball import BALL, BallModel
-from procs.model.field import Field, Point
+from procs.model.field import Field, MatchField, Point
 from procs.model.geometry import clamp, plausible, wrap_rad
 from procs.model.kicker import tells_held
 from procs.model.kinematics import STANDSTILL, Velocity
@@ -32,7 +32,7 @@ class NavigatorConfig(Config):
 
     limits: Limits = Limits()
     """Limits of the robot's motion."""
-    field: Field = Field()
+    field: MatchField = Field()
     """Measures of the field."""
     players: Players = dict(PLAYERS)
     """Team and number of each robot."""

@@ -22,7 +22,7 @@ from procs.behaviour.skills.book import SKILLS, SkillRunner
 from procs.behaviour.skills.skill import Blind, Drive, Obstacle, Scene, Sight, Status, Step
 from procs.behaviour.view import view_of
 from procs.model.ball import BALL, BallModel
-from procs.model.field import Field, Point
+from procs.model.field import Field, MatchField, Point
 from procs.model.geometry import plausible
 from procs.model.kicker import tells_held
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
@@ -39,7 +39,7 @@ _TOLD_MAX = 100
 class SkillerConfig(Config):
     """Settings of the skills."""
 
-    field: Field = Field()
+    field: MatchField = Field()
     """Measures of the field."""
     players: Players = dict(PLAYERS)
     """Team and number of each robot."""

@@ -9,7 +9,7 @@ from lcmtypes.soccer import line_points_t, pose_t
 from procs.evaluation.particles import Particles
 from procs.localization.line_map import line_map
 from procs.localization.line_matching import LinePoints
-from procs.model.field import Field
+from procs.model.field import Field, MatchField
 from procs.model.frames import rotation
 from procs.model.geometry import plausible, wrap_rad
 
@@ -20,7 +20,7 @@ _POINTS = 60
 class ParticleLocalizationConfig(Config):
     """Settings of the particles."""
 
-    field: Field = Setting(Field(), frozen=True)
+    field: MatchField = Setting(Field(), frozen=True)
     """Measures of the field."""
 
 

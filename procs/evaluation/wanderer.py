@@ -8,7 +8,7 @@ from pydantic import Field as Setting
 from fwk import Calls, Clock, Component, Config, Reads, Writes, channel
 from lcmtypes.robot import motor_command_t
 from lcmtypes.soccer import ground_truth_t, place_robot_t
-from procs.model.field import Field
+from procs.model.field import Field, MatchField
 from procs.model.frames import rotation
 
 _INSIDE_M = 0.7  # robots drive to places so far inside the lines
@@ -26,7 +26,7 @@ class WandererConfig(Config):
     """Speed of driving."""
     turn_rad_s: float = Setting(default=1.5, ge=0.0, le=4.0)
     """Highest speed of turning."""
-    field: Field = Field()
+    field: MatchField = Field()
     """Measures of the field."""
 
 

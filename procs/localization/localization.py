@@ -18,7 +18,7 @@ from procs.localization.recent_motion import RecentMotion
 from procs.localization.self_localizer import LocalizerSettings, SelfLocalizer
 from procs.model.algebra import product
 from procs.model.expected_errors import EXPECTED
-from procs.model.field import Field
+from procs.model.field import Field, MatchField
 from procs.model.frames import Floats, rotation
 from procs.model.geometry import plausible, wrap_rad
 from procs.model.realism import Realism
@@ -48,7 +48,7 @@ _NOTHING = SeenPoints(np.empty(0), np.empty(0))
 class LocalizationConfig(Config):
     """Settings of the self-localization."""
 
-    field: Field = Field()
+    field: MatchField = Field()
     """Measures of the field."""
     start_x_m: float | None = Setting(None, frozen=True)
     """x of the robot's start in the world frame, if it is known; requires start_y_m and start_heading_rad. The start

@@ -12,6 +12,8 @@ from typing import Annotated, Any, NamedTuple
 from pydantic import BaseModel, ConfigDict, ValidationInfo, field_validator
 from pydantic import Field as Setting
 
+from fwk import Alike
+
 SIDES = (-1.0, 1.0)
 
 Measure = Annotated[float, Setting(gt=0.0, le=100.0)]
@@ -215,6 +217,10 @@ class Field(BaseModel):
     def _in_area(self, x_m: float, y_m: float, side: float, width_m: float, depth_m: float, margin_m: float) -> bool:
         from_goal_line_m = self.half_length_m - side * x_m
         return -margin_m <= from_goal_line_m <= depth_m + margin_m and abs(y_m) <= width_m / 2 + margin_m
+
+
+MatchField = Annotated[Field, Alike]
+"""Measures of the field as a setting: a match has one field."""
 
 
 def field_of(measures: Any) -> Field:

@@ -8,6 +8,7 @@ from typing import Annotated, Literal, Protocol
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from fwk import Alike
 from procs.model.ball import BallModel
 
 CYAN, MAGENTA = "cyan", "magenta"
@@ -88,7 +89,7 @@ class Player(BaseModel):
     """Number on the robot's back; no two players of a team have the same."""
 
 
-Players = Annotated[dict[str, Player], Field(frozen=True)]
+Players = Annotated[dict[str, Player], Field(frozen=True), Alike]
 """Namespace of each robot to its team and number; no component of a match changes them while it runs."""
 
 PLAYERS: Mapping[str, Player] = {

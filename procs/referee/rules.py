@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, NonNegative
 
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field as SoccerField
+from procs.model.field import MatchField
 from procs.model.game_states import State
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 
@@ -130,7 +131,7 @@ class Rules(BaseModel):
     """A robot with its second yellow card leaves the field for this time (RefBox: 90 s)."""
     repair_s: PositiveFloat = 20.0
     """A robot under repair, or its substitute, comes back after this time (RefBox: 20 s)."""
-    field: SoccerField = SoccerField()
+    field: MatchField = SoccerField()
     """Measures of the field."""
     robot: RobotModel = ROBOT
     """Geometry of the robots, by which pushing is judged."""

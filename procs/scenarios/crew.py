@@ -16,6 +16,7 @@ from lcmtypes.soccer import (
     reset_world_t,
 )
 from procs.model.field import Field as SoccerField
+from procs.model.field import MatchField
 from procs.model.units import US_PER_S
 from procs.scenarios.action import Action
 
@@ -31,7 +32,7 @@ class CrewConfig(Config):
 
     actions: list[Action] = Field([], frozen=True)
     """Actions in any order."""
-    field: SoccerField = Field(SoccerField(), frozen=True)
+    field: MatchField = Field(SoccerField(), frozen=True)
     """Measures of the field."""
     settle_s: NonNegativeFloat = 1.0
     """How long the world stands still at the start of a scenario, so that robots find their new places."""

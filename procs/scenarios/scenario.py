@@ -9,7 +9,7 @@ from typing import Any, get_type_hints
 
 import yaml
 
-from fwk import Component, Config
+from fwk import Alike, Component, Config
 from fwk.testing import Document, Expression, ExpressionError, MemorySystem, Verdict, play
 from procs.behaviour.agent import Agent
 from procs.behaviour.navigator import Navigator
@@ -98,19 +98,23 @@ def _check(scenario: Scenario, document: Document) -> None:
         if setting in scenario.settings.get(name, {}):
             text = f"settings: '{setting}' of {name} is stated under {where}, too; keep one"
             document.add(text, "settings", name, setting)
-    if name := _of_other_players(scenario):
-        text = f"settings: 'players' of {name} are not those of all components; state them under rules:, for all"
-        document.add(text, "settings", name, "players")
+    for name, setting in _unlike(scenario):
+        text = f"settings: '{setting}' of {name} is not that of all components; state it under rules:, for all"
+        document.add(text, "settings", name, setting)
 
 
-def _of_other_players(scenario: Scenario) -> str:
-    """Returns the first component whose own setting `players` is not that of all others, or an empty text."""
-    parts = [
-        name for name, kind in _components(scenario).items() if "players" in getattr(_config(kind), "model_fields", ())
-    ]
-    stated = {name: scenario.settings.get(name, {}).get("players") for name in parts}
-    own = [name for name, players in stated.items() if players is not None]
-    return own[0] if any(players != stated[own[0]] for players in stated.values() if own) else ""
+def _unlike(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    """Yields settings that components should have alike but do not, each after the first component that states it."""
+    owners: dict[str, list[str]] = {}
+    for name, kind in _components(scenario).items():
+        for setting, field in getattr(_config(kind), "model_fields", {}).items():
+            if Alike in field.metadata:
+                owners.setdefault(setting, []).append(name)
+    for setting, names in owners.items():
+        stated = {name: scenario.settings.get(name, {}).get(setting) for name in names}
+        own = [name for name, value in stated.items() if value is not None]
+        if own and any(value != stated[own[0]] for value in stated.values()):
+            yield own[0], setting
 
 
 def _stated(scenario: Scenario) -> Iterator[tuple[str, str, str]]:

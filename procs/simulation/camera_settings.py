@@ -4,7 +4,7 @@ from pydantic import Field as Setting
 
 from fwk import Config
 from procs.model.ball import BALL, BallModel
-from procs.model.field import Field
+from procs.model.field import Field, MatchField
 from procs.model.realism import Realism, chosen
 from procs.model.robot import ROBOT, RobotModel
 from procs.simulation.camera_errors import PRESETS, CameraErrors
@@ -50,7 +50,7 @@ class CameraSettings(Config):
     """Interruptions in a minute, in which frames are lost in a row."""
     gap_s: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Mean duration of an interruption."""
-    field: Field = Field()
+    field: MatchField = Field()
     """Measures of the field."""
     robot: RobotModel = ROBOT
     """Geometry of all robots."""

@@ -18,7 +18,7 @@ from lcmtypes.soccer import (
 from procs.model.algebra import Floats, product
 from procs.model.ball import BALL, BallModel
 from procs.model.expected_errors import EXPECTED
-from procs.model.field import Field, Point
+from procs.model.field import Field, MatchField, Point
 from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
 from procs.model.robot import ROBOT, TEAM_NUMBERS, RobotModel, team_in
@@ -79,7 +79,7 @@ class PerceptsConfig(Config):
     """Mean duration of an interruption."""
     frozen: bool = False
     """The camera hangs: what its last picture shows comes again as if it were new."""
-    field: Field = Field()
+    field: MatchField = Field()
     """Measures of the field."""
     robot: RobotModel = ROBOT
     """Geometry of all robots."""

@@ -23,7 +23,7 @@ from lcmtypes.soccer import (
 )
 from procs.model.ball import BALL, BallModel
 from procs.model.events import Event
-from procs.model.field import Field, Point
+from procs.model.field import Field, MatchField, Point
 from procs.model.kinematics import Wheels
 from procs.model.realism import Realism
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel, player_of
@@ -50,7 +50,7 @@ _FIELD_TICKS = 100  # from one message with the measures of the field to the nex
 class SimulatorConfig(Config):
     """Settings of the world."""
 
-    field: Field = Setting(Field(), frozen=True)
+    field: MatchField = Setting(Field(), frozen=True)
     """Measures of the field."""
     players: Players = dict(PLAYERS)
     """Team and number of each robot."""

@@ -8,7 +8,7 @@ from fwk import Writes
 from lcmtypes.soccer import line_points_t, obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
 from procs.model.expected_errors import EXPECTED
-from procs.model.field import Field
+from procs.model.field import Field, MatchField
 from procs.model.robot import ROBOT, RobotModel
 from procs.vision.colours import ColourRange, Hsv, Picture, not_below, to_hsv
 from procs.vision.detector import Detector, DetectorConfig
@@ -31,7 +31,7 @@ class OmniFieldConfig(DetectorConfig):
     used if the other robots are narrower than usual."""
     robot: RobotModel = ROBOT
     """Geometry of the other robots."""
-    field: Field = Field()
+    field: MatchField = Field()
     """Measures of the field; the width of its lines separates them from other white things."""
     nearest_m: float | None = Setting(default=None, gt=0.0)
     """Distance at which the rays begin; null: just outside the robot's own body."""

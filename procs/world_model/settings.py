@@ -5,7 +5,7 @@ from pydantic import Field as Setting
 from fwk import Config
 from procs.model.ball import BALL, BallModel
 from procs.model.expected_errors import EXPECTED
-from procs.model.field import Field
+from procs.model.field import Field, MatchField
 from procs.model.realism import Realism
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.units import US_PER_S
@@ -26,7 +26,7 @@ def counts(age_s: float) -> bool:
 class WorldModelConfig(Config):
     """Settings of the world model."""
 
-    field: Field = Field()
+    field: MatchField = Field()
     """Measures of the field."""
     ball_timeout_s: float = Setting(default=2.0, gt=0.0)
     """The ball is unknown after this time without a sighting."""

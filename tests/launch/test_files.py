@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from fwk.model.errors import PlanError
 from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
 
@@ -72,6 +73,24 @@ def test_shared_sizes_reach_all_that_use_them() -> None:
         for name in ("agent", "skiller", "navigator", "world_model", "camera"):
             config = settings[f"{robot}/{name}"]
             assert (config["ball"]["radius_m"], config["robot"]["radius_m"]) == (0.1, 0.26), name
+
+
+@pytest.mark.parametrize(
+    ("option", "difference"),
+    [
+        ("cyan1/localization.field.length_m=18", "18.0 in cyan1/localization, but 22.0 in world/simulator"),
+        ("world/simulator.field.width_m=12", "12.0 in world/simulator, but 14.0 in world/referee"),
+        ("cyan1/omni_field.field.goal_width_m=2", "2.0 in cyan1/omni_field, but 2.4 in world/simulator"),
+        ("world/crew.field.border_m=2", "2.0 in world/crew, but 1.0 in world/simulator"),
+        ("magenta1/world_model.players.cyan1.number=7", "7 in magenta1/world_model, but 1 in world/simulator"),
+        ("world/referee.players.zoe={team: cyan, number: 8}", "8} in world/referee, but missing in world/simulator"),
+    ],
+)
+def test_a_match_has_one_field_and_the_same_players(option: str, difference: str) -> None:
+    with pytest.raises(PlanError) as caught:
+        plan_of("soccer-1v1.yaml", option)
+    (mistake,) = caught.value.problems
+    assert difference in mistake.text
 
 
 def test_vision_alone_has_a_camera_of_files_and_both_detectors() -> None:

@@ -7,7 +7,7 @@ import fwk
 import fwk.testing
 
 SUBJECTS = {
-    "component": ("Components and settings", ["Component", "Config", "Field"]),
+    "component": ("Components and settings", ["Component", "Config", "Field", "Alike"]),
     "channels": (
         "Channels",
         [

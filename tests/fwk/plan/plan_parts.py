@@ -1,10 +1,10 @@
 """Small components for launch files under test."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field as Setting
 
-from fwk import Aspect, Component, Config, Each, Image, Reads, TimeSource, VisionMaster, Writes, channel
+from fwk import Alike, Aspect, Component, Config, Each, Image, Reads, TimeSource, VisionMaster, Writes, channel
 from lcmtypes.core import frame_t
 from lcmtypes.robot import motor_command_t, odometry_t
 
@@ -58,6 +58,22 @@ class Keyed(Component):
 
     stage = "act"
     config: KeyedConfig
+
+
+class PlaceConfig(Config):
+    bed: Annotated[Limits, Alike] = Limits()
+    """Measures that all know."""
+    names: Annotated[dict[str, int], Alike] = {"fern": 1}
+    """Numbers of plants."""
+    gain: float = 0.5
+    """Of each."""
+
+
+class Gardener(Component):
+    """Works in the bed of all others."""
+
+    stage = "act"
+    config: PlaceConfig
 
 
 class Odometer(Component):

@@ -51,7 +51,11 @@ def test_players_of_the_rules_play_in_all_components(tmp_path: Path) -> None:
         ),
         (
             "dummies: [a]\nsettings: {world/simulator: {players: {a: {team: cyan, number: 2}}}}",
-            "mine.yaml:2: settings: 'players' of world/simulator are not those of all components; state them under",
+            "mine.yaml:2: settings: 'players' of world/simulator is not that of all components; state it under rules:",
+        ),
+        (
+            "robots: [cyan1]\nsettings: {cyan1/agent: {field: {length_m: 18}}}",
+            "mine.yaml:2: settings: 'field' of cyan1/agent is not that of all components; state it under rules:",
         ),
         ("settings: {shared: {realism: harsh}}", "no component 'shared'; write realism: beside settings:, and field"),
     ],
