@@ -29,7 +29,8 @@ class Config(BaseModel):
     A setting that cannot be changed during the run is frozen: `port: int = Field(7000, frozen=True)`.
     Unknown keys, wrong types and numbers that are not finite are refused. Nested settings are fields whose type is a
     `Config`. When a launch file or a change during a run is checked, validators get the channels of the component's
-    ports once they are known: `info.context["channels"]["wheel_command"]`; otherwise `info.context` is None.
+    ports once they are known: `info.context["channels"]["wheel_command"]`, and those of the whole system:
+    `info.context["all_channels"]`; otherwise `info.context` is None.
     """
 
     model_config = ConfigDict(

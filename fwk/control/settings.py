@@ -142,7 +142,8 @@ class RunSettings:
             for name, value in said.items()
             if not _described(kind, name)["editable"] and value != _value(self._values[component.index], name)
         ]
-        texts = texts or [text for _, text in mistakes_with_channels(kind, values, component.channels)]
+        names = [channel.name for channel in self._plan.channels]
+        texts = texts or [text for _, text in mistakes_with_channels(kind, values, component.channels, names)]
         for text in texts:
             problems.add("", component.name, text)
         if texts:

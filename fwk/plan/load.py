@@ -156,7 +156,7 @@ class _Loading:
         check_clock(components, shared["clock"], problems)
         check_alike(components, problems)
         check_cameras(components, whole.channels, problems)
-        check_with_channels(components, whole.ports, problems)
+        check_with_channels(components, whole, problems)
         self._check_ports(made)
         check_processes(made.hosts, made.components, asked, problems)
         problems.stop_if_any()

@@ -1,7 +1,7 @@
 """Action of a field crew: one command to the simulator or the referee, at its time."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Annotated, Any, Self
 
 from pydantic import AllowInfNan, BaseModel, ConfigDict, Field, Strict, model_validator
@@ -14,6 +14,7 @@ from lcmtypes.soccer import (
     referee_command_t,
     reset_world_t,
 )
+from procs.model.right_name import right_name
 
 MESSAGES: Mapping[str, type[Any]] = {
     "place_ball": place_ball_t,
@@ -78,6 +79,14 @@ class Action(BaseModel):
         for name, value in self.fields.items():
             setattr(made, name, value)
         return made
+
+    def stranger(self, robots: Collection[str]) -> str:
+        """Returns what is wrong with the robot of the command if it is none of `robots`; otherwise an empty text."""
+        command = self.message
+        robot = command.robot if "robot" in command.__slots__ else None
+        if robot is None or robot in robots or (self.kind == "referee" and not robot):
+            return ""
+        return f"no robot '{robot}'; {right_name(robot, robots)}"
 
 
 def field_mistakes(fields: Mapping[str, Any], message: Any) -> list[str]:

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from pydantic import Field, NonNegativeFloat
+from pydantic import Field, NonNegativeFloat, ValidationInfo, field_validator
 
 from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Request, Serves, channel
 from lcmtypes.soccer import (
@@ -23,6 +23,8 @@ from procs.scenarios.action import Action
 if TYPE_CHECKING:
     from procs.scenarios.file import Scenario
 
+_WHEELS = "/wheel_command"
+"""End of the name of a channel that each robot has."""
 _TOLD = 8
 """Mistakes of a scenario that an answer tells."""
 
@@ -36,6 +38,18 @@ class CrewConfig(Config):
     """Measures of the field."""
     settle_s: NonNegativeFloat = 1.0
     """How long the world stands still at the start of a scenario, so that robots find their new places."""
+
+    @field_validator("actions")
+    @classmethod
+    def _of_robots(cls, actions: list[Action], info: ValidationInfo) -> list[Action]:
+        """Refuses robots that the system does not have, as soon as its robots are known."""
+        if info.context is not None:
+            channels = info.context["all_channels"]
+            robots = [name.removesuffix(_WHEELS) for name in channels if name.endswith(_WHEELS)]
+            found = [(each, each.stranger(sorted(robots))) for each in actions]
+            if mistakes := [f"{each.kind} at {each.at_s:g} s: {stranger}" for each, stranger in found if stranger]:
+                raise ValueError("; ".join(mistakes))
+        return actions
 
 
 class Crew(Component):

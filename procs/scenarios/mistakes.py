@@ -12,7 +12,6 @@ from pydantic import ValidationError
 
 from lcmtypes.soccer import place_ball_t
 from procs.model.field import Field, Point
-from procs.model.right_name import right_name
 from procs.model.robot import PLAYERS, player_of, team_of
 from procs.model.units import heading_mistake
 from procs.referee.names import Names
@@ -94,16 +93,14 @@ def command_mistakes(
     for place, action in enumerate(commands):
         if action.at_s >= time_s:
             yield f"commands.{place}: at_s is {action.at_s:g}; the scenario ends at {time_s:g} s"
-        yield from (f"commands.{place}: {action.kind}: {each}" for each in _refusals(action, everyone, config) if each)
+        wrong = [stranger] if (stranger := action.stranger(everyone)) else _refusals(action, everyone, config)
+        yield from (f"commands.{place}: {action.kind}: {each}" for each in wrong if each)
 
 
 def _refusals(action: Action, everyone: Sequence[str], config: SimulatorConfig) -> Iterator[str]:
     command = action.message
-    robot = command.robot if "robot" in command.__slots__ else ""
-    if "robot" in command.__slots__ and robot not in everyone and (robot or action.kind != "referee"):
-        yield f"no robot '{robot}'; {right_name(robot, everyone)}"
-    elif action.kind == "referee":
-        yield mistake_in(command.name, command.team, robot, everyone, Names(config.players))
+    if action.kind == "referee":
+        yield mistake_in(command.name, command.team, command.robot, everyone, Names(config.players))
     elif action.kind == "place_robot":
         yield robot_mistake(command, everyone, config.field) or heading_mistake(command.heading_rad)
     elif action.kind == "place_ball":

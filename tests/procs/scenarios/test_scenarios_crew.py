@@ -4,8 +4,9 @@ import math
 
 import pytest
 
+from fwk.control.settings import RunSettings
 from fwk.lcm import messages
-from fwk.testing import MemorySystem, system_of
+from fwk.testing import MemorySystem, PlanError, launch_plan, system_of
 from lcmtypes.core import acknowledgement_t, answer_t
 from lcmtypes.soccer import (
     game_state_t,
@@ -212,3 +213,25 @@ def test_command_that_is_refused_later_is_logged() -> None:
     assert "refused: the command at 0.5 s: cyan has no goal to take back; the score is cyan 0:0 magenta" in logged(
         system
     )
+
+
+@pytest.mark.parametrize(
+    ("kind", "fields", "mistake"),
+    [
+        ("place_robot", "robot: cyan11, x_m: 1", "no robot 'cyan11'; did you mean 'cyan1'?"),
+        ("place_robot", "x_m: 1", "no robot ''; there are cyan1, magenta1"),
+        ("hold_robot", "robot: magneta1, held: true", "no robot 'magneta1'; did you mean 'magenta1'?"),
+        ("referee", "name: red_card, robot: cyan2", "no robot 'cyan2'; did you mean 'cyan1'?"),
+    ],
+)
+def test_action_on_an_unknown_robot_is_a_mistake(kind: str, fields: str, mistake: str) -> None:
+    right = "{place_robot: {robot: cyan1}}, {place_ball: {x_m: 2}}, {referee: {name: stop}}"
+    with pytest.raises(PlanError) as caught:
+        launch_plan("soccer-1v1.yaml", (f"world/crew.actions=[{right}, {{at_s: 0.5, {kind}: {{{fields}}}}}]",))
+    assert str(caught.value) == f"--set: world/crew: actions: {kind} at 0.5 s: {mistake}"
+
+
+def test_settings_beside_actions_change_during_a_run() -> None:
+    plan = launch_plan("soccer-1v1.yaml", ("world/crew.actions=[{hold_robot: {robot: magenta1, held: true}}]",))
+    (new,) = RunSettings(plan).check(["world/crew.settle_s=2"])
+    assert new.said == {"settle_s": 2.0}
