@@ -52,7 +52,11 @@ class Document:
 
     def add(self, text: str, *path: str | int) -> None:
         """Adds a mistake of the value at a path."""
-        self._problems.add(self._node.at(*path).place, "", text)
+        self._problems.add(self.place(*path), "", text)
+
+    def place(self, *path: str | int) -> str:
+        """Returns file and line of the value at a path."""
+        return self._node.at(*path).place
 
     def raise_mistakes(self) -> None:
         """Ends the check if there is a mistake.

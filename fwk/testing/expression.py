@@ -54,13 +54,19 @@ class Namespace:
 class Expression:
     """A condition in Python's syntax; it calls nothing but the given words and reads nothing but messages."""
 
-    def __init__(self, text: str, words: Words | None = None) -> None:
+    def __init__(self, text: str, words: Words | None = None, place: str = "") -> None:
         """Checks the text.
+
+        Args:
+            text: the condition.
+            words: functions that it may call.
+            place: its file and line, for the errors.
 
         Raises:
             ExpressionError: the text is not a condition, or it has an unknown word.
         """
         self.text = text
+        self._name = f"{place}: '{text}'" if place else f"'{text}'"
         if not text.strip():
             raise ExpressionError("an empty condition; write such as robot.odometry.x_m >= 1")
         self._words = {**_PLAIN, **(words or {})}
@@ -68,7 +74,7 @@ class Expression:
             tree = ast.parse(text.strip(), mode="eval")
         except SyntaxError as error:
             cure = "; join comparisons such as a.b == 1 with and, or, not" if error.msg == "invalid syntax" else ""
-            raise ExpressionError(f"'{text}': {error.msg}{cure}") from error
+            raise ExpressionError(f"{self._name}: {error.msg}{cure}") from error
         except (ValueError, RecursionError, MemoryError) as error:  # bytes that are no text; a hundred brackets
             raise _unreadable(text, error) from error
         for node in ast.walk(tree):
@@ -81,7 +87,7 @@ class Expression:
             if node not in used:
                 right = hint(node.id, self._words)
                 quotes = "; a text needs quotes" if node in compared and right.startswith("there") else ""
-                raise ExpressionError(f"'{text}': there is no '{node.id}'; {right}{quotes}")
+                raise ExpressionError(f"{self._name}: there is no '{node.id}'; {right}{quotes}")
         self._names_known = False
         try:
             self._tree = Bounding().visit(tree)
@@ -106,7 +112,7 @@ class Expression:
                 self._names_known = True
             return eval(self._code, {"__builtins__": {}}, known)
         except (AttributeError, KeyError, IndexError, TypeError, ValueError, ArithmeticError, RecursionError) as error:
-            raise ExpressionError(f"'{self.text}': {_said(error)}") from error
+            raise ExpressionError(f"{self._name}: {_said(error)}") from error
 
     def holds(self, newest: Callable[[str], Any]) -> bool:
         """Returns whether the condition holds; see `value`.
@@ -116,10 +122,10 @@ class Expression:
         """
         value = self.value(newest)
         if not self._reads:
-            raise ExpressionError(f"'{self.text}': a fixed value is no condition; compare something with it")
+            raise ExpressionError(f"{self._name}: a fixed value is no condition; compare something with it")
         wrong = always_holds(self.text.strip(), value)
         if wrong:
-            raise ExpressionError(f"'{self.text}': {wrong}")
+            raise ExpressionError(f"{self._name}: {wrong}")
         return bool(value)
 
     def _check_parts(self, part: ast.expr, known: Mapping[str, Any]) -> None:
@@ -148,11 +154,11 @@ class Expression:
 
     def _check(self, node: ast.AST) -> None:
         if not isinstance(node, (*_ALLOWED, ast.Load)):
-            raise ExpressionError(f"'{self.text}': {type(node).__name__} is not allowed in a condition")
+            raise ExpressionError(f"{self._name}: {type(node).__name__} is not allowed in a condition")
         if isinstance(node, ast.Attribute) and node.attr.startswith("_"):
-            raise ExpressionError(f"'{self.text}': '{node.attr}' begins with an underscore")
+            raise ExpressionError(f"{self._name}: '{node.attr}' begins with an underscore")
         if isinstance(node, ast.Call) and (not isinstance(node.func, ast.Name) or node.func.id not in self._words):
-            raise ExpressionError(f"'{self.text}': calls only {', '.join(sorted(self._words))}")
+            raise ExpressionError(f"{self._name}: calls only {', '.join(sorted(self._words))}")
 
 
 def _unreadable(text: str, error: Exception) -> ExpressionError:
@@ -184,6 +190,8 @@ def _said(error: Exception) -> str:
         return text if " " in text else f"there is no '{text}'"
     if isinstance(error, IndexError):
         return "an index is beyond the end of its list; ask for its length before: len(...) > 0 and ..."
+    if isinstance(error, ZeroDivisionError):
+        return "it divides by zero; ask for the divisor before: ... != 0 and ..."
     return str(error)
 
 

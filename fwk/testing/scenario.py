@@ -1,11 +1,13 @@
 """Scenarios: what must happen in a run, eventually, in this order, always, or in the end."""
 
-from collections.abc import Callable, Sequence
+from collections import defaultdict
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
-from pydantic import AllowInfNan, BaseModel, ConfigDict, Field, Strict
+from pydantic import AllowInfNan, BaseModel, ConfigDict, Field, PrivateAttr, Strict
 
+from fwk.testing.document import Document
 from fwk.testing.expression import Expression, Words
 
 _SHORTEST_S = 0.001  # the shortest tick
@@ -27,6 +29,17 @@ class Expectations(BaseModel):
     """Each must hold in the last tick."""
     time_s: Annotated[float, Field(ge=_SHORTEST_S, le=_LONGEST_S), AllowInfNan(False), Strict()] = 10.0
     """Limit of the logical time. Without `always` and `at_end` a scenario ends once all the rest has happened."""
+    _places: dict[tuple[str, int], str] = PrivateAttr({})
+
+    @property
+    def conditions(self) -> list[tuple[tuple[str, int], str]]:
+        """All conditions, each after its path."""
+        kinds = {kind: getattr(self, kind) for kind in ("eventually", "in_order", "always", "at_end")}
+        return [((kind, place), text) for kind, texts in kinds.items() for place, text in enumerate(texts)]
+
+    def written_in(self, document: Document) -> None:
+        """Takes file and line of each condition from the document, for errors of the run."""
+        self._places = {path: document.place(*path) for path, _ in self.conditions}
 
 
 @dataclass
@@ -54,11 +67,11 @@ class Watch:
             ExpressionError: a condition cannot be understood.
         """
 
-        def made(texts: Sequence[str]) -> list[Expression]:
-            return [Expression(text, words) for text in texts]
-
-        self._open, self._ordered = made(expected.eventually), made(expected.in_order)
-        self._always, self._at_end = made(expected.always), made(expected.at_end)
+        made: dict[str, list[Expression]] = defaultdict(list)
+        for path, text in expected.conditions:
+            made[path[0]].append(Expression(text, words, expected._places.get(path, "")))
+        self._open, self._ordered = made["eventually"], made["in_order"]
+        self._always, self._at_end = made["always"], made["at_end"]
         self._broken: list[str] = []
 
     @property

@@ -62,7 +62,7 @@ def _play_once(scenarios: Mapping[Path, Scenario]) -> int:
         try:
             verdict = outcome(scenario)
         except ExpressionError as error:
-            print(f"{path}: {error}", file=sys.stderr)
+            print(error, file=sys.stderr)
             wrong = True
             continue
         except Exception as error:  # of a component

@@ -49,7 +49,7 @@ def played_in(folder: Path, seed: int) -> dict[str, list[str]]:
         mistakes.append(f"{folder}: there are no scenarios, such as pass-is-received.yaml")
     if mistakes:
         raise ScenarioError("; ".join(mistakes))
-    return {path.stem: _broken(path, scenario, seed) for path, scenario in scenarios.items()}
+    return {path.stem: _broken(scenario, seed) for path, scenario in scenarios.items()}
 
 
 def broken_in(path: Path, seed: int) -> list[str]:
@@ -58,14 +58,14 @@ def broken_in(path: Path, seed: int) -> list[str]:
     Raises:
         ScenarioError: the file is not a scenario.
     """
-    return _broken(path, read(path), seed)
+    return _broken(read(path), seed)
 
 
-def _broken(path: Path, scenario: Scenario, seed: int) -> list[str]:
+def _broken(scenario: Scenario, seed: int) -> list[str]:
     try:
         return outcome(scenario.model_copy(update={"seed": seed})).broken
     except ExpressionError as error:  # a mistake that only the run shows
-        raise ScenarioError(f"{path}: {error}") from error
+        raise ScenarioError(str(error)) from error
     except Exception as error:  # of a component; the other scenarios are worth a result
         return [f"{type(error).__name__}: {error}"]
 

@@ -81,12 +81,6 @@ class Scenario(Expectations):
         return _LAID_S if self.ball else 0.0
 
     @property
-    def conditions(self) -> list[tuple[tuple[str, int], str]]:
-        """All conditions, each after its path."""
-        kinds = {kind: getattr(self, kind) for kind in ("eventually", "in_order", "always", "at_end")}
-        return [((kind, place), text) for kind, texts in kinds.items() for place, text in enumerate(texts)]
-
-    @property
     def actions(self) -> list[Action]:
         """Actions of the field crew, among them that which puts the ball to its place once the kick-off has begun."""
         return self.commands + ([Action(at_s=_BALL_S, place_ball=self.ball)] if self.ball else [])
@@ -119,6 +113,7 @@ def parsed(text: str, where: str, further: Check = _nothing, last: Check = _noth
         scenario = document.values(Scenario)
         document.raise_mistakes()
         assert scenario
+        scenario.written_in(document)
         config = simulator_settings(scenario.shared | scenario.settings.get("world/simulator", {}))
         _add(document, _mistakes(scenario, config))
         document.values(RefereeConfig, "rules", who="rules", what="setting")

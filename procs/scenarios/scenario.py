@@ -222,11 +222,7 @@ def run(path: Path) -> Verdict:
         ScenarioError: the file is not a scenario.
         ExpressionError: a condition cannot be understood.
     """
-    scenario = read(path)
-    try:
-        return outcome(scenario)
-    except ExpressionError as error:
-        raise ExpressionError(f"{path}: {error}") from error
+    return outcome(read(path))
 
 
 def outcome(scenario: Scenario) -> Verdict:

@@ -151,9 +151,19 @@ def test_command_without_an_answer_breaks(tmp_path: Path, at_s: float, condition
     assert run(written(tmp_path, text)).broken == [broken]
 
 
-def test_condition_that_fails_in_the_run_names_the_file(tmp_path: Path) -> None:
-    path = written(tmp_path, "dummies: [cyan2]\nalways: [\"touching[0] == 'cyan2'\"]\ntime_s: 0.2\n")
-    with pytest.raises(ExpressionError, match=re.escape(f"{path}: 'touching[0] == 'cyan2'': an index is beyond")):
+@pytest.mark.parametrize(
+    ("condition", "reason"),
+    [
+        ("touching[0] == 'cyan2'", "an index is beyond the end of its list; ask for its length before: len(...) > 0"),
+        ("1 / ball_speed > 0", "it divides by zero; ask for the divisor before: ... != 0 and ..."),
+        ("1 % ball_speed > 0", "it divides by zero; ask for the divisor before: ... != 0 and ..."),
+    ],
+)
+@pytest.mark.parametrize("kind", ["eventually", "in_order", "always", "at_end"])
+def test_condition_that_fails_in_the_run_names_its_line(kind: str, condition: str, reason: str, tmp_path: Path) -> None:
+    text = f"dummies: [cyan2]\n{kind}:\n  - x(cyan2) < 0\n  - {condition}\ntime_s: 0.2\n"
+    path = written(tmp_path, text)
+    with pytest.raises(ExpressionError, match=re.escape(f"{path}:4: '{condition}': {reason}")):
         run(path)
 
 

@@ -34,7 +34,7 @@ def test_seeds_are_played_with_files_of_ones_own(
 def test_mistake_that_a_run_shows_is_no_failure(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With and without seeds the file is named, once, and the others are played."""
+    """With and without seeds the line is named, once, and the others are played."""
     good, wrong = tmp_path / "good.yaml", tmp_path / "wrong.yaml"
     good.write_text("dummies: [cyan2]\nalways: [x(cyan2) < 0]\ntime_s: 0.2\n")
     wrong.write_text("dummies: [cyan2]\nalways: [1 / ball_speed > 0]\ntime_s: 0.2\n")
@@ -42,7 +42,7 @@ def test_mistake_that_a_run_shows_is_no_failure(
         monkeypatch.setattr("sys.argv", ["scenarios", str(wrong), str(good), *words])
         assert command.main() == 2
         shown = capsys.readouterr()
-        assert shown.err.count(f"{wrong}: ") == 1
+        assert shown.err.count(f"{wrong}:2: ") == 1
         assert "good" in shown.out
         assert "wrong" not in shown.out
 

@@ -43,7 +43,7 @@ def test_evaluation_names_mistakes_before_it_plays(tmp_path: Path, monkeypatch: 
 
 def test_evaluation_names_a_mistake_that_the_run_shows(tmp_path: Path) -> None:
     path = written(tmp_path, "dummies: [cyan2]\nalways: [\"touching[0] == 'cyan2'\"]\ntime_s: 0.2\n")
-    with pytest.raises(ScenarioError, match=re.escape(f"{path}: 'touching[0] == 'cyan2'': an index is beyond")):
+    with pytest.raises(ScenarioError, match=re.escape(f"{path}:2: 'touching[0] == 'cyan2'': an index is beyond")):
         evaluation.played_in(tmp_path, 1)
 
 
