@@ -16,6 +16,7 @@ from procs.behaviour.commands import accepted_place
 from procs.behaviour.company import Company, job_among_silent, rank_of
 from procs.behaviour.game import Game, frame_of, game_of
 from procs.behaviour.order import Order
+from procs.behaviour.own_player import with_own_robot
 from procs.behaviour.skills.book import SKILLS
 from procs.behaviour.stalls import NO_JOBS, Stalls
 from procs.behaviour.steady_role import SteadyRole
@@ -25,7 +26,7 @@ from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, MatchField, Point
 from procs.model.geometry import wrap_rad
 from procs.model.kicker import tells_held
-from procs.model.robot import ABSENT, CYAN, MAGENTA, PLAYERS, ROBOT, Players, RobotModel, player_of
+from procs.model.robot import ABSENT, PLAYERS, ROBOT, Players, RobotModel
 from procs.model.teams import Team, team_number_of_player
 
 _EXPIRES_S = 1.0
@@ -57,14 +58,7 @@ class AgentConfig(Config):
     @field_validator("players")
     @classmethod
     def _own_robot_plays(cls, players: Players, info: ValidationInfo) -> Players:
-        """Refuses players without the own robot, as soon as its name is known."""
-        robot = info.context["channels"]["role"][0].rpartition("/")[0] if info.context else ""
-        if robot and player_of(robot, players) is None:
-            raise ValueError(
-                f"{robot} is not a player; add players.{robot}, such as {{team: {CYAN}, number: 1}}, or name the robot"
-                f" by its team, {CYAN} or {MAGENTA}, and its number, such as {CYAN}1"
-            )
-        return players
+        return with_own_robot(players, info, "role")
 
 
 class Agent(Component):

@@ -3,6 +3,8 @@
 from difflib import get_close_matches
 from functools import lru_cache, partial
 
+from pydantic import ValidationInfo, field_validator
+
 from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Request, RequestState, Serves, Writes, channel
 from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_state_t, motor_command_t
 from lcmtypes.soccer import (
@@ -17,6 +19,7 @@ from lcmtypes.soccer import (
 from procs.behaviour.bodies import Bodies
 from procs.behaviour.commands import mistake
 from procs.behaviour.game import Whose, frame_of, game_of
+from procs.behaviour.own_player import with_own_robot
 from procs.behaviour.permitted import Permitted, is_field_player
 from procs.behaviour.skills.book import SKILLS, SkillRunner
 from procs.behaviour.skills.skill import Blind, Drive, Obstacle, Scene, Sight, Status, Step
@@ -47,6 +50,11 @@ class SkillerConfig(Config):
     """Geometry of all robots."""
     ball: BallModel = BALL
     """Size and friction of the ball."""
+
+    @field_validator("players")
+    @classmethod
+    def _own_robot_plays(cls, players: Players, info: ValidationInfo) -> Players:
+        return with_own_robot(players, info, "skill_status")
 
 
 class Skiller(Component):

@@ -38,6 +38,16 @@ STATED = {name: player.model_dump() for name, player in PLAYERS.items()}
 PARTS = ("agent", "skiller", "navigator")
 FIELD = Field()
 LAUNCH = Path("launch").resolve()
+MINE = """
+from fwk import Calls, Component, Writes
+from lcmtypes.soccer import role_t, skill_command_t
+
+
+class MyAgent(Component):
+    stage = "think"
+    role: Writes[role_t]
+    skill: Calls[skill_command_t]
+"""
 TRUTH = f"include: [{LAUNCH}/msl-field.yaml, {LAUNCH}/msl-truth.yaml]\nname: names\n"
 
 
@@ -163,8 +173,25 @@ def test_robot_with_an_agent_has_to_be_a_player(robot: str, tmp_path: Path) -> N
     file = tmp_path / "names.yaml"
     file.write_text(f"{TRUTH}robots: {{{robot}: {{use: msl_robot_truth}}}}\n")
     with pytest.raises(
-        PlanError, match=rf"{robot}/agent: players: {robot} is not a player; add players\.{robot}, such"
+        PlanError,
+        match=rf"{robot}/agent \(and 1 more\): players: {robot} is not a player; add players\.{robot} under 'shared:'",
     ):
         launch_plan(str(file))
     file.write_text(f"{file.read_text()}shared: {{players: {{{robot}: {{team: magenta, number: 9}}}}}}\n")
+    launch_plan(str(file))
+
+
+def test_robot_with_an_agent_of_its_own_has_to_be_a_player(tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text(MINE)
+    parts = "".join(f"    {part}: {{use: procs.behaviour.{part}}}\n" for part in ("skiller", "navigator"))
+    parts += "".join(f"    {part}: {{use: procs.drivers.{part}}}\n" for part in ("base", "kicker"))
+    parts += "    world_model: {use: procs.scenarios.perfect_world}\n    agent: {use: mine}\n"
+    file = tmp_path / "names.yaml"
+    file.write_text(f"{TRUTH}templates:\n  mine:\n{parts}robots: {{red1: {{use: mine}}}}\n")
+    with pytest.raises(
+        PlanError, match=r"red1/skiller: players: red1 is not a player; add players\.red1 under"
+    ) as caught:
+        launch_plan(str(file))
+    assert len(caught.value.problems) == 1
+    file.write_text(f"{file.read_text()}shared: {{players: {{red1: {{team: magenta, number: 9}}}}}}\n")
     launch_plan(str(file))
