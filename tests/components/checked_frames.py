@@ -1,6 +1,5 @@
 """A camera whose frames carry a checksum, and finders that check it."""
 
-import os
 import zlib
 from pathlib import Path
 
@@ -22,9 +21,6 @@ class Camera(Component):
     image: VisionMaster
     clock: Clock
     rng: np.random.Generator
-
-    def init(self) -> None:
-        leave("camera.pid", os.getpid())
 
     def loop(self) -> None:
         for _ in range(1 + self.clock.tick % 3):
@@ -50,7 +46,6 @@ class Finder(Component):
     config: FinderConfig
 
     def init(self) -> None:
-        leave(self.name.replace("/", "-") + ".pid", os.getpid())
         self.dawdled = False
 
     def loop(self) -> None:
