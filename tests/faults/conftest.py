@@ -6,13 +6,20 @@ import pytest
 
 from tests.faults.aftermath import Aftermath
 from tests.harness.fixtures import folder, launch, orchestra_types
-from tests.harness.runs import played
+from tests.harness.runs import Launched, played
 from tests.programs.orchestra import orchestra
 
-__all__ = ["RUN", "TICKS", "folder", "launch", "orchestra_types"]
+__all__ = ["RUN", "TICKS", "WAITS", "folder", "launch", "orchestra_types", "until_it_waits"]
 
 TICKS = 40
 RUN = ("launch/orchestra.yaml", "--seed", "7", "--record", "log.lcm")
+WAITS = ("--set", "d/player.trouble=loop:wait", "--set", "d/player.trouble_tick=5")
+"""Options of a short run that must not end before its test has acted: `d/player` waits for the file `go-on`."""
+
+
+def until_it_waits(run: Launched) -> None:
+    """Waits until `d/player` does."""
+    run.until_true((run.folder / "trouble-d_player").exists, "d/player waits")
 
 
 @pytest.fixture(scope="session")

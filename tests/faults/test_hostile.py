@@ -13,7 +13,7 @@ from fwk.control.address import gateway_address, supervisor_address
 from fwk.lcm import wire
 from fwk.model.ports import Ports
 from tests.faults.aftermath import Aftermath
-from tests.faults.conftest import RUN, TICKS
+from tests.faults.conftest import RUN, TICKS, WAITS, until_it_waits
 from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import difference
@@ -115,9 +115,10 @@ def disturbers(ports: PortBlock) -> Iterator[list[Echo | Caller]]:
 def test_garbled_echoes_and_garbage_requests_change_nothing(
     launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, disturbers: list[Echo | Caller]
 ) -> None:
-    run = launch(*RUN, "--ticks", str(TICKS), "--speed", "1")
-    run.until_ticks("f/player", 1)
+    run = launch(*RUN, "--ticks", str(TICKS), "--speed", "1", *WAITS)
+    until_it_waits(run)
     after.note(run)
+    (traced / "go-on").touch()
     while run.process.poll() is None:
         for each in disturbers:
             each.disturb()

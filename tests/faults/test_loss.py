@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.faults.aftermath import Aftermath
-from tests.faults.conftest import RUN, TICKS
+from tests.faults.conftest import RUN, TICKS, WAITS, until_it_waits
 from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording, difference
@@ -32,9 +32,10 @@ def test_lost_datagrams_and_tiny_buffers_change_nothing(
     launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, share: str
 ) -> None:
     wrapper, env = lossy(share)
-    run = launch(*RUN, "--ticks", str(TICKS), env=env, wrapper=wrapper)
-    run.until_ticks("f/player", 2)
+    run = launch(*RUN, "--ticks", str(TICKS), *WAITS, env=env, wrapper=wrapper)
+    until_it_waits(run)
     after.note(run)
+    (traced / "go-on").touch()
     recording = after.check(run, equal_to=undisturbed, replays=False)
     assert recording.gaps() == {}
     assert "lost 0" in run.text

@@ -2,7 +2,7 @@
 
 import select
 import signal
-from itertools import chain
+from itertools import chain, product
 from pathlib import Path
 
 import psutil
@@ -48,15 +48,19 @@ FAULTS = {
 
 def test_failing_components_are_named_and_restarted(launch: Launch, faulty: Path, after: Aftermath) -> None:
     wrongs = [wrong(what, 5 + 2 * n, player=player) for n, (player, (what, _)) in enumerate(FAULTS.items())]
-    run = launch(*RUN, "--ticks", "20", *chain(*wrongs))
-    run.until_ticks("a/player", 2)
+    run = launch(*RUN, *UNHURRIED, *chain(*wrongs))
+    run.until("f/player runs again, incarnation 2")
+    run.until_ticks("f/player", 3)
     after.note(run)
+    run.signal(signal.SIGINT)
     recording = after.check(run, tracebacks=True)
+    last = recording.records[-1].tick - 1  # the end may come in the middle of a tick
     text_log = (run.run_dir / "fwk.log").read_text()  # the console throttles floods
     for player, (_, says) in FAULTS.items():
         assert f"{player}/player ended: {says}" in text_log
         assert f"{player}/player runs again, incarnation 2" in text_log
-        assert len(recording.messages[f"{player}/note"]) == 20 * len(STAGES[player])
+        places = [(header.tick, header.stage) for header in recording.headers(f"{player}/note")]
+        assert [each for each in places if each[0] <= last] == [*product(range(1, last + 1), STAGES[player])]
     assert recording.gaps() == {}
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.faults.aftermath import Aftermath
-from tests.faults.conftest import RUN
+from tests.faults.conftest import RUN, WAITS, until_it_waits
 from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.runs import write_files
@@ -34,9 +34,10 @@ def trouble(kind: str) -> list[str]:
 def test_a_slow_gateway_records_a_writer_that_died_in_tick_one(
     launch: Launch, slow: Path, after: Aftermath, hosting: str
 ) -> None:
-    run = launch(*RUN, "--ticks", "40", "--hosting", hosting, *trouble("loop:raise"))
-    run.until_ticks("f/player", 1)
+    run = launch(*RUN, "--ticks", "40", "--hosting", hosting, *trouble("loop:raise"), *WAITS)
+    until_it_waits(run)
     after.note(run)
+    (slow / "go-on").touch()
     recording = after.check(run, tracebacks=True)
     assert recording.gaps() == {}
     assert "a/player#2" in {header.writer for header in recording.headers("a/note")}

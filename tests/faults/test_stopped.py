@@ -12,7 +12,7 @@ import pytest
 
 from fwk.model.tick_events import MessageLost
 from tests.faults.aftermath import Aftermath
-from tests.faults.conftest import RUN, TICKS
+from tests.faults.conftest import RUN, TICKS, WAITS, until_it_waits
 from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
@@ -35,30 +35,34 @@ def test_a_stopped_process_in_lockstep_leaves_no_trace(
     launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, stops: list[str]
 ) -> None:
     """The processes are stopped one after another; when the last one continues, so does the run, perhaps to its end."""
-    run = launch(*RUN, "--ticks", str(TICKS))
-    run.until_ticks("f/player", 5)
+    run = launch(*RUN, "--ticks", str(TICKS), *WAITS)
+    until_it_waits(run)
     after.note(run)
-    still = WHO[stops[0]](run)
-    for following in (*stops[1:], ""):
-        os.kill(still, signal.SIGSTOP)
-        found = WHO[following](run) if following else 0  # while the run stands still
+    pids = [WHO[each](run) for each in stops]
+    os.kill(pids[0], signal.SIGSTOP)
+    (traced / "go-on").touch()
+    for still, following in zip(pids, (*pids[1:], 0), strict=True):
         pause(STILL_S)
+        if following:
+            os.kill(following, signal.SIGSTOP)  # before the run goes on
         with contextlib.suppress(ProcessLookupError):  # a run without restarts ends and wakes the zygote
             os.kill(still, signal.SIGCONT)
-        still = found
     recording = after.check(run, equal_to=undisturbed)
     assert recording.gaps() == {}
     assert "lost 0" in run.text
 
 
-def test_lockstep_waits_for_a_stopped_component(launch: Launch, traced: Path, after: Aftermath) -> None:
+def test_lockstep_waits_for_a_stopped_component(
+    launch: Launch, traced: Path, ports: PortBlock, after: Aftermath
+) -> None:
     run = launch(*RUN, *UNHURRIED)
     run.until_ticks("f/player", 5)
     after.note(run)
     os.kill(run.host("d/player"), signal.SIGSTOP)
-    pause(0.5)
+    steered = Steered(run, ports)
+    run.until_true(lambda: steered.ask("status")["waits_for"] == ["d/player"], "that d/player alone is waited for")
     before = run.tick("a/player")
-    pause(STILL_S - 0.5)
+    pause(STILL_S)
     assert run.tick("a/player") == before
     os.kill(run.host("d/player"), signal.SIGCONT)
     run.until_ticks("f/player", 5)
