@@ -12,7 +12,7 @@ import pytest
 from fwk.cli.run.run_directory import RUNS
 from fwk.cli.run.run_record import RESULT_FILE, RUN_FILE, RunRecord, read_record
 from tests.fwk.cli.cli_processes import PROCS, launch, run, write_files
-from tests.harness.runs import PortBlock
+from tests.harness.runs import Launched, PortBlock
 
 
 @pytest.fixture
@@ -75,12 +75,14 @@ def test_an_immediate_failure_of_a_detached_run_is_reported(folder: Path) -> Non
 
 
 SLEEPER = """
-import time
+from pathlib import Path
 from fwk import Component
+from fwk.clock import sleep_s
 class Sleeper(Component):
     stage = "think"
     def init(self) -> None:
-        time.sleep(3)
+        while not Path("awake").exists():
+            sleep_s(0.01)
     def loop(self) -> None:
         pass
 """
@@ -89,10 +91,14 @@ class Sleeper(Component):
 @pytest.mark.system
 def test_detach_names_the_component_that_the_start_waits_for(folder: Path, ports: PortBlock, name: str) -> None:
     write_files(folder, {"procs/sleeper.py": SLEEPER, "launch/slow.yaml": "components: {a/bed: {use: procs.sleeper}}"})
-    command = ["fwk-launch", "slow.yaml", "--bus-port", str(ports.bus), "--run", name, "--ticks", "5", "--detach"]
-    result = run(folder, *command)
-    assert result.returncode == 0
-    assert re.search(rf"^{name}: the start has waited [12] s for a/bed$", result.stdout, re.MULTILINE), result.stdout
+    launched = Launched(folder, ports, ("slow.yaml", "--run", name, "--ticks", "5", "--detach"), {})
+    told = re.compile(rf"^{name}: the start has waited [1-9]\d* s for a/bed$", re.MULTILINE)
+    try:
+        launched.until_true(lambda: told.search(launched.text) is not None, "the name of the component")
+        (folder / "awake").touch()
+        assert launched.wait() == 0, launched.text
+    finally:
+        launched.end()
 
 
 @pytest.mark.system
