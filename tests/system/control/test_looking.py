@@ -33,7 +33,10 @@ def test_status_and_top_show_every_component(run: Steered, ports: PortBlock) -> 
     assert (status["plan"], status["bus_port"]) == ("small", ports.bus)
     assert [each["name"] for each in status["components"]] == ["r/counter", "r/follower", "r/camera", "r/finder"]
     assert {each["state"] for each in status["components"]} == {"running"}
-    run.launched.until_true(lambda: run.component("r/counter")["iterations"] > 0, "the first report")
+    run.launched.until_true(
+        lambda: all(each["iterations"] for each in run.ask("status")["components"]), "a report of each component"
+    )
+    (newer,) = [json.loads(run.fwk("top", "--once", "--json", "--since", "now", "--interval", "0.1"))["times"]]
     (counter,) = run.json("status", "r/counter")["components"]
     assert {each["setting"]: each["type"] for each in counter["parameters"]} == {
         "step": "float",
@@ -53,7 +56,6 @@ def test_status_and_top_show_every_component(run: Steered, ports: PortBlock) -> 
     for each in measured:
         assert sum(count for _, count in each["histogram"]) == each["count"] > 0
         assert each["p50_ms"] in {longest_ms for longest_ms, _ in each["histogram"]} | {each["max_ms"]}
-    (newer,) = [json.loads(run.fwk("top", "--once", "--json", "--since", "now", "--interval", "0.1"))["times"]]
     assert newer["loop"]["count"] < times["loop"]["count"]
     assert "cycle" in run.fwk("top", "--once", "--interval", "0.1")
     assert run.ask("state", name="r/counter")["state"] == "running"
