@@ -107,7 +107,7 @@ def test_status_names_the_holder_and_stop_gives_the_loop_back(launch: Launch, ta
 
 def test_take_over_in_real_time(launch: Launch, taken: Path) -> None:
     file = taken / "taken.yaml"
-    file.write_text(file.read_text().replace("speed: max", "clock: wall\nperiod_s: 0.02\nstage_time_s: 0.5"))
+    file.write_text(file.read_text().replace("speed: max", "clock: wall\nperiod_s: 0.02\nstage_time_s: 20"))
     run = launch("taken.yaml", "--ticks", "30", "--record", "log.lcm")
     assert run.wait() == 0, run.text
     recording = Recording(taken / "log.lcm")
