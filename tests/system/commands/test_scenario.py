@@ -35,11 +35,13 @@ time_s: 0.6
 def test_scenario_of_a_file_is_played_and_replayed(launch: Launch, ports: PortBlock, tmp_path: Path) -> None:
     write_files(tmp_path, FILES)
     run = Steered(launch("match.yaml", "--speed", "2"), ports)
+    run.ask("pause")  # on a slow machine many ticks would pass between the commands, and a replay of them takes minutes
     unloaded = run.fwk("call", "world/scenario", "name=match-ends", "--timeout", "1000", code=1)
     assert "world/scenario: not sent, because world/crew is stopped: " in unloaded
     assert "world/crew is stopped: does not start with the run; 'fwk load' starts it" in unloaded
     run.fwk("load", "world/crew")
     assert "mine.yml: No such file or directory" in run.fwk("call", "world/scenario", "text=@mine.yml", code=2)
+    run.ask("resume")
     wrong = run.fwk("call", "world/scenario", "name=match-end", code=1)
     assert "rejected" in wrong
     assert "no scenario 'match-end' in the book; did you mean 'match-ends'?" in wrong
