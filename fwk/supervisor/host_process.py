@@ -157,7 +157,7 @@ class HostProcess:
     @property
     def coming(self) -> bool:
         """Whether it is to take part in the loop and does not yet."""
-        return self._state in (HostState.WAITING, HostState.STARTING)
+        return self._joins and self._state in (HostState.WAITING, HostState.STARTING)
 
     @property
     def expected(self) -> bool:
@@ -194,17 +194,20 @@ class HostProcess:
         return self._state is HostState.STOPPING and limit_us is not None and now_us - self.since_us > limit_us
 
     def want_stop(self, now_us: int) -> None:
-        """Sets the desired state to stopped."""
+        """Sets the desired state to stopped; nothing waits for a process that has yet to be started."""
         self.wanted, self.asked_us = False, now_us
+        self._joins = self._joins and self._state is not HostState.WAITING
 
     def want_start(self, now_us: int) -> None:
-        """Sets the desired state to running."""
+        """Sets the desired state to running; a host that waits for its restart is started at once."""
+        self.restart_us = now_us
         if not self.wanted or self._state in (HostState.STOPPED, HostState.FAILED):
             self.want_restart(now_us)
 
     def want_restart(self, now_us: int) -> None:
         """Sets the desired state to running in a new process; earlier failures are forgotten."""
-        self.wanted, self.asked_us = True, now_us
+        self.wanted, self.asked_us, self.restart_us = True, now_us, now_us
+        self._joins = self._state in JOINING
         self.desired_run += 1
         self._starts_us.clear()
 

@@ -159,8 +159,10 @@ class Launched:
         )
 
     def host(self, player: str) -> int:
-        """Returns the process of a player, which writes its number to `traces/`, if that folder exists."""
-        return self._trace(player, "pid")
+        """Returns the process of a player, which writes its number to the folder `traces` that the test has made."""
+        number = self._trace(player, "pid")
+        assert number, f"{player} has left no trace"  # signals to 0 reach the tests
+        return number
 
     def tick(self, player: str) -> int:
         """Returns the newest tick of a player; 0 before its first."""

@@ -191,7 +191,7 @@ class Hosts:
         """Starts hosts in a state whose time has come and whose needs run; names those that wait for others."""
         now_us = self._core.now_us()
         for host in self._core.hosts:
-            if host.state is not state or now_us < host.restart_us or self._stopping:
+            if host.state is not state or now_us < host.restart_us or self._stopping or not host.wanted:
                 continue
             missing = [needed for index in host.needs if not (needed := self._core.hosts[index]).running]
             lost = [needed for needed in missing if needed.failed or not needed.wanted]

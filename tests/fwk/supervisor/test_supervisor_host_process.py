@@ -1,5 +1,7 @@
 """Restart policies as histories: starts and ends of a process, and the actions that follow."""
 
+from collections.abc import Callable
+
 import pytest
 
 from fwk.model.sections import RestartPolicy, RestartWhen
@@ -135,6 +137,28 @@ def test_a_failed_host_starts_again_on_request() -> None:
     host.begin_start(30)
     assert host.alive
     assert not host.must_leave
+
+
+@pytest.mark.parametrize("asks", [HostProcess.want_start, HostProcess.want_restart])
+def test_a_request_cuts_the_wait_for_a_restart_short(asks: Callable[[HostProcess, int], None]) -> None:
+    host = running("always")
+    host.ended(1, 20, stopping=False)
+    assert host.restart_us > 20
+    asks(host, 30)
+    assert host.restart_us == 30
+    host.begin_start(40)
+    host.become_ready(50)
+    assert host.settled
+
+
+def test_nothing_waits_for_a_stopped_host_that_has_no_process() -> None:
+    host = running("always")
+    host.ended(1, 20, stopping=False)
+    assert (host.expected, host.coming) == (True, True)
+    host.want_stop(30)
+    assert (host.expected, host.coming) == (False, False)
+    host.want_restart(40)
+    assert (host.expected, host.coming) == (True, True)
 
 
 def test_start_leaves_running_processes_alone() -> None:

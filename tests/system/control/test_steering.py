@@ -1,5 +1,7 @@
 """Components are stopped, started, restarted and reloaded in a real run, from another terminal."""
 
+import os
+import signal
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,6 +11,7 @@ import pytest
 from fwk.control.client import ControlError
 from fwk.model.tick_events import HostLost, HostStarted, HostStopped
 from tests.harness.components import source
+from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock
 from tests.programs.control_system import Steered, write_system
@@ -164,3 +167,30 @@ def test_a_hanging_component_is_named_and_can_be_stopped(run: Steered) -> None:
     run.ticks_pass()
     assert run.component("r/counter")["state"] == "running"
     run.end()
+
+
+@pytest.mark.parametrize("paused", [True, False])
+def test_a_component_that_waits_for_its_restart_can_be_stopped(
+    tmp_path: Path, ports: PortBlock, launch: Launch, paused: bool
+) -> None:
+    """It ends between two ticks of a run that is paused, otherwise in its iteration."""
+    write_system(tmp_path, ports)
+    file = tmp_path / "small.yaml"
+    file.write_text(file.read_text().replace("{limit: 1}", "{limit: 1, backoff_s: 3600}"))
+    run = Steered(launch("small.yaml"), ports)
+    counter = run.component("r/counter")["pid"]
+    if paused:
+        run.fwk("pause")
+    else:
+        os.kill(counter, signal.SIGSTOP)
+        run.launched.until_true(lambda: run.ask("status")["waits_for"] == ["r/counter"], "a tick that waits for it")
+    os.kill(counter, signal.SIGKILL)
+    run.launched.until_true(lambda: run.component("r/counter")["state"] == "waiting", "its end")
+    run.ask("resume")
+    run.launched.until_true(lambda: run.ask("status")["waits_for"] == ["r/counter"], "a run that waits for it")
+    assert "r/counter stopped" in run.fwk("stop", "r/counter")
+    run.ticks_pass()
+    run.steer("start", "r/counter")
+    run.ticks_pass()
+    assert run.component("r/counter")["state"] == "running"
+    assert "byte for byte" in run.fwk("replay", str(run.end()), "--verify")
