@@ -89,6 +89,7 @@ class Whistle(Match):
             goal = next((event for event in sight.events if event.kind is Kind.GOAL), None)
             verdict = self._judge(goal, sight) if goal else None
             if verdict and verdict.scorer:
+                self._count_fouls(scene)
                 self.goal(verdict.scorer)
             elif self._punish(scene, only=State.PENALTY):
                 return

@@ -119,13 +119,17 @@ def test_collision_in_the_tick_of_a_ball_out(case: tuple[float, Kind], last: boo
     assert script.state == ((State.HALF_TIME, Team.NONE, True) if ends else CRASHES[case])
 
 
-def test_goal_stands_in_the_tick_of_a_collision() -> None:
+@pytest.mark.parametrize("last", [False, True])
+def test_goal_stands_in_the_tick_of_a_collision(last: bool) -> None:
     script = Script(fouls_per_card=1).playing()
     script.roll(2.0, 0.0)
     script.touch("cyan2")
+    if last:
+        script.whistle.time_in_half_s = script.whistle.rules.half_s
     crash = Event(Kind.COLLISION, "magenta2", "cyan2", 9.5, 0.5, 3.5)
     script.tick(Event(Kind.GOAL, "cyan2", "", 11.2, 0.3, 5.0), crash)
-    assert (script.score, script.state) == ((1, 0), (State.KICK_OFF, MAGENTA, True))
+    follows = (State.HALF_TIME, Team.NONE) if last else (State.KICK_OFF, MAGENTA)
+    assert (script.score, script.state) == ((1, 0), (*follows, True))
     assert script.whistle.cards.warned == {"magenta2"}, "the foul is counted"
 
 
