@@ -243,9 +243,10 @@ class Campaign:
                 if failure:
                     failures[seed] = failure
                     continue
+                self._codes[seed] = self._code
+                _write(self._folder / _CODE, json.dumps(self._codes))  # first: no result is there with another code
                 _write(self._file(seed), text)
-                self._flaws[seed], self._codes[seed] = "", self._code
-                _write(self._folder / _CODE, json.dumps(self._codes))
+                self._flaws[seed] = ""
                 yield seed
         except KeyboardInterrupt:  # the executor ends all runs; one that is cancelled before makes it print an error
             running = {}

@@ -67,6 +67,24 @@ def test_ctrl_c_while_a_result_is_written_leaves_no_part(tmp_path: Path, monkeyp
     assert [file.name for file in tmp_path.iterdir()] == ["campaign.json"]
 
 
+def test_ctrl_c_leaves_no_result_without_its_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A result without it would count as one of the code at hand, whatever becomes of the code."""
+    campaign, keep, kept = Campaign(tmp_path, {}, code="old"), os.fsync, list[int]()
+
+    def interrupt(file: int) -> None:
+        if kept:
+            raise KeyboardInterrupt
+        kept.append(file)
+        keep(file)
+
+    monkeypatch.setattr("os.fsync", interrupt)
+    with ThreadPoolExecutor(1) as executor, pytest.raises(KeyboardInterrupt):
+        list(campaign.play(lambda *_: [1.0], "it", 1.0, [1], executor))
+    monkeypatch.undo()
+    later = Campaign(tmp_path, {}, code="new")
+    assert later.missing([1]) + later.of_other_code([1]) == [1]
+
+
 def test_interrupted_evaluation_says_what_is_left(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     play = Campaign.play
 
