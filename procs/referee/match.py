@@ -161,11 +161,13 @@ class Match:
         self.calls.append(Call(State.KICK_OFF, team, goal=True))
 
     def take_back(self, team: Team) -> None:
-        """Takes the newest goal of a team back, which has one."""
+        """Takes the newest goal of a team back, which has one; ends a match that is decided without it."""
         self.score[team] -= 1
         self.calls.append(Call(self.state, team, reason=Reason.SUBGOAL))
         if self.shootout:
             self.shootout.take_back(team)
+            if self.shootout.decided and self.rules.automatic:
+                self.end_half()
 
     def end_penalty(self, scored: bool) -> None:
         """Counts the deciding penalty at hand, and goes on with the next one; ends a match that is decided."""

@@ -145,6 +145,16 @@ def test_goal_of_a_penalty_is_taken_back() -> None:
     assert (script.score, counted(script)) == ((0, 0), ([1, 0], [0, 0]))
 
 
+@pytest.mark.parametrize("automatic", [True, False])
+def test_goal_taken_back_decides_the_penalties(automatic: bool) -> None:
+    script = penalties()
+    for command, team in (("goal", "cyan"), ("start", ""), ("goal", "magenta"), ("start", ""), ("goal", "cyan")):
+        assert ask(script, command, team) == ""
+    script.whistle.rules = script.whistle.rules.model_copy(update={"automatic": automatic})
+    assert ask(script, "subgoal", "magenta") == ""
+    assert (script.state[0], script.score) == (State.FROZEN if automatic else State.PENALTY, (2, 0))
+
+
 @pytest.mark.parametrize("command", ["kickoff", "freekick", "goalkick", "throwin", "corner", "drop_ball"])
 def test_only_penalties_while_they_decide_the_match(command: str) -> None:
     script = penalties()
