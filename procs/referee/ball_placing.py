@@ -53,9 +53,13 @@ class BallPlacing:
         self.rolls = math.dist(ball, self._before) > _ROLLS_M_S * duration_s
         self._before = ball
 
+    def is_away(self, ball: Point, rules: Rules) -> bool:
+        """Returns whether the ball is further from its spot than the crew may have to put it, or not in the field."""
+        return math.dist(ball, self.spot) > _MISPLACED_M or not rules.field.in_field(*ball, rules.ball.radius_m)
+
     def is_under_way(self, ball: Point, rules: Rules) -> bool:
         """Returns whether the crew has not had the time to put the ball on its spot."""
-        return self._since_s <= _CREW_S and self._is_away(ball, rules)
+        return self._since_s <= _CREW_S and self.is_away(ball, rules)
 
     def is_misplaced(self, ball: Point, robots: Iterable[Point], rules: Rules) -> bool:
         """Returns whether the crew has put the ball down, but it is not on its spot and can be put there.
@@ -64,7 +68,7 @@ class BallPlacing:
         """
         if self._since_s <= _CREW_S:
             return False
-        if self._is_away(ball, rules):
+        if self.is_away(ball, rules):
             return True
         beside = self._put_back < _PATIENCE and not self.rolls and math.dist(ball, self.spot) > _BESIDE_M
         clear_m = rules.robot.radius_m + 2 * rules.ball.radius_m
@@ -74,6 +78,3 @@ class BallPlacing:
         """Remembers the place of the ball in a running game; of a ball that is out, where it was first seen outside."""
         if self.left_at is None or field.in_field(*self.left_at) or field.in_field(*ball):
             self.left_at = ball
-
-    def _is_away(self, ball: Point, rules: Rules) -> bool:
-        return math.dist(ball, self.spot) > _MISPLACED_M or not rules.field.in_field(*ball, rules.ball.radius_m)

@@ -110,13 +110,16 @@ class Match:
     def stop(self, ball: Point) -> None:
         """Stops the game until it is started by hand; from play it goes on with a dropped ball.
 
-        The ball is dropped where it is, but as far from goals and lines as a free kick is taken.
+        The ball is dropped where it is, but as far from goals and lines as a free kick is taken. That of a set piece
+        is put back on its spot.
         """
         if not self.stopped:
             self._ball.remember(ball, self.rules.field)
         if self.state is State.PLAY:
             self.interrupt(restarts.ball_left_there(self._ball.left_at or ball, self.rules), Reason.BY_HAND)
         elif not self.at_rest:
+            if not self.stopped and self._ball.is_away(ball, self.rules):
+                self._ball.put_back()
             self._enter(self.state, self.team, stopped=True)
         self.held, self._starting = True, False
 

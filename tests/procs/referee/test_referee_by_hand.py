@@ -193,6 +193,18 @@ def test_stop_takes_back_a_start_that_waits() -> None:
     assert script.state == (State.CORNER_KICK, CYAN, True)
 
 
+def test_start_in_the_tick_of_a_stop_waits_for_the_ball() -> None:
+    script = Script(automatic=False)
+    assert ask(script, "freekick", "cyan") == ask(script, "start") == ""
+    spot = script.ball
+    script.carry("cyan2", spot.x_m + 1.5)
+    for name in ("stop", "start"):
+        assert carry_out(script.whistle, Sight(script.ball, robots=script.robots), name) == ""
+    assert script.state == (State.FREE_KICK, CYAN, True)
+    script.tick()
+    assert (script.state, script.ball) == ((State.FREE_KICK, CYAN, False), spot)
+
+
 def test_repeats_by_hand_use_up_no_repeats_after_breaches() -> None:
     """A breach has a set piece repeated twice at most; what a person repeats does not count."""
     script = Script(penalties=2)
