@@ -32,6 +32,8 @@ _ALLOWED = (
     ast.cmpop,
     ast.expr_context,
 )
+_IDENTITIES: Mapping[type[ast.cmpop], tuple[str, str]] = {ast.Is: ("is", "=="), ast.IsNot: ("is not", "!=")}
+"""Comparisons that do not look at values, and those that do."""
 
 
 class ExpressionError(ValueError):
@@ -155,6 +157,9 @@ class Expression:
     def _check(self, node: ast.AST) -> None:
         if not isinstance(node, (*_ALLOWED, ast.Load)):
             raise ExpressionError(f"{self._name}: {type(node).__name__} is not allowed in a condition")
+        if isinstance(node, ast.cmpop) and type(node) in _IDENTITIES:
+            symbol, right = _IDENTITIES[type(node)]
+            raise ExpressionError(f"{self._name}: '{symbol}' compares no values; write {right}")
         if isinstance(node, ast.Attribute) and node.attr.startswith("_"):
             raise ExpressionError(f"{self._name}: '{node.attr}' begins with an underscore")
         if isinstance(node, ast.Call) and (not isinstance(node.func, ast.Name) or node.func.id not in self._words):

@@ -79,6 +79,8 @@ class Misfits:
                 order = _ORDERS.get(type(operation))
                 if order:
                     return f"'{order}' compares two numbers, but {self._wrong(left, right)}"
+                if isinstance(self._values(right), str):
+                    return f"'in' looks for a text in {self._said(right)}, but {self._wrong(left, also_numbers=True)}"
                 return f"'in' looks into a list or a text, but {self._wrong(right, also_numbers=True)}"
         return ""
 

@@ -57,6 +57,7 @@ WORDS = {"spot": spot, "far": far}
         ("world.state.score[0] > 1", "world.state.score is a number, not a list; it has no [0]"),
         ("world.state.names['a'] == 'a'", "an index is a whole number, but 'a' is a text"),
         ("1 in world.state.score", "'in' looks into a list or a text, but world.state.score is a number"),
+        ("world.state.names in 'a'", "'in' looks for a text in 'a', but world.state.names is a list"),
         ("world.state.score == 'b'", "'==' compares values of one kind, but world.state.score is a number and 'b' is"),
         ("world.state.names != 'a'", "world.state.names is a list and 'a' is a text"),
         ("not spot", "spot is a Spot, which always holds; compare one of its fields, such as spot.x_m"),

@@ -49,6 +49,8 @@ def test_value_of_a_condition(text: str, value: Any) -> None:
         ("[each for each in world.state.names]", "ListComp is not allowed"),
         ("(lambda: 1)()", "calls only|not allowed"),
         ("world.state.names.append(1)", "calls only"),
+        ("world.state.score is 2", "'is' compares no values; write =="),
+        ("world.state.score is not 2", "'is not' compares no values; write !="),
         ("doubl > 3", r"'doubl > 3': there is no 'doubl'; did you mean 'double'\?"),
         ("max(wrld, 3) > 3", "there is no 'wrld'; there are abs, double, len"),
         ("-" * 2000 + "1", "cannot be read; write it shorter"),
