@@ -24,7 +24,7 @@ from procs.behaviour.tactics import Tactics, leave_field
 from procs.behaviour.view import View, view_of
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, MatchField, Point
-from procs.model.geometry import wrap_rad
+from procs.model.geometry import plausible, wrap_rad
 from procs.model.kicker import tells_held
 from procs.model.robot import ABSENT, PLAYERS, ROBOT, Players, RobotModel
 from procs.model.teams import Team, team_number_of_player
@@ -158,6 +158,7 @@ class Agent(Component):
             self._call is None
             or skill != command.skill
             or speed_m_s != command.speed_m_s
+            or not plausible(*place, heading_rad)  # NaN differs from nothing
             or math.dist(place, (command.x_m, command.y_m)) > self.config.new_target_m
         ):
             return True

@@ -17,8 +17,8 @@ _ROUNDING_M = 1e-6
 
 
 def accepted_place(skill: str, place: Point, field: Field, bodies: Bodies) -> Point:
-    """Returns the place, or the nearest one that the skill accepts."""
-    if skill not in (*_DRIVES, *_AT_PLACE):
+    """Returns the place, or the nearest one that the skill accepts; one of senseless numbers stays, for `mistake`."""
+    if skill not in (*_DRIVES, *_AT_PLACE) or not plausible(*place):
         return place
     x_m, y_m = _furthest_m(skill, field, bodies)
     if skill in _DRIVES and is_in_goal(place, field):

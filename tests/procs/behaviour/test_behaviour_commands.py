@@ -66,3 +66,10 @@ def test_place_that_is_only_aimed_at_may_lie_outside() -> None:
 def test_accepted_place_is_no_mistake(skill: str) -> None:
     place = accepted_place(skill, Point(-30.0, 9.0), FIELD, USUAL)
     assert not found(skill=skill, x_m=place.x_m, y_m=place.y_m)
+
+
+@pytest.mark.parametrize("skill", ["goto", "dribble", "mark", "block", "search", "aim", "pass", "push"])
+@pytest.mark.parametrize("x_m", [math.nan, math.inf, 2e4])
+def test_senseless_place_stays_a_mistake(skill: str, x_m: float) -> None:
+    place = accepted_place(skill, Point(x_m, 0.0), FIELD, USUAL)
+    assert found(skill=skill, x_m=place.x_m, y_m=place.y_m).startswith(f"x_m is {x_m:g}; ")

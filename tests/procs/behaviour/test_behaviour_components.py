@@ -18,9 +18,10 @@ from lcmtypes.soccer import (
 )
 from procs.behaviour.agent import Agent
 from procs.behaviour.navigator import Navigator
+from procs.behaviour.order import Order
 from procs.behaviour.skiller import Skiller
 from procs.behaviour.skills.book import SKILLS
-from procs.model.field import Field
+from procs.model.field import Field, Point
 from procs.referee.referee import Referee
 from tests.procs.behaviour.behaviour_parts import newest
 
@@ -242,6 +243,19 @@ def test_agent_orders_only_places_that_are_accepted() -> None:
     bench.iterate()
     command = newest(bench, "skill")
     assert (command.skill, command.x_m, command.y_m) == ("block", 12.0, 8.0)
+
+
+@pytest.mark.parametrize("skill", ["goto", "shoot"])
+@pytest.mark.parametrize("senseless", [{"place": Point(math.nan, 1.0)}, {"heading_rad": math.nan}])
+def test_senseless_order_reaches_the_skiller(
+    agent: Bench, monkeypatch: pytest.MonkeyPatch, skill: str, senseless: dict[str, Any]
+) -> None:
+    for order in (Order(skill, Point(3.0, 1.0)), Order(skill, Point(3.0, 1.0))._replace(**senseless)):
+        monkeypatch.setattr(Agent, "_decide", lambda *_, order=order: ("attacker", order))
+        think(agent)
+    place_m, turn_rad = senseless.get("place", Point(3.0, 1.0)), senseless.get("heading_rad", 0.0)
+    command = newest(agent, "skill")
+    assert [command.x_m, command.y_m, command.heading_rad] == pytest.approx([*place_m, turn_rad], nan_ok=True)
 
 
 def test_skiller_that_is_stopped_fails_its_command(skiller: Bench) -> None:
