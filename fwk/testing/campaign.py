@@ -293,10 +293,14 @@ def failure_of(error: Exception) -> str:
 
     The tick is left out, so that runs that fail at the same place have the same cause.
     """
-    frame, context = own_frame(error), error.__context__
+    raised: BaseException = error
+    context = error.__context__
+    if isinstance(error, ComponentFailedError):
+        raised, context = error.__cause__ or error, error
+    frame = own_frame(raised)
     place = f" ({frame.filename}:{frame.lineno})" if frame else ""
     failed = f"{context}".partition(": ")[0] if isinstance(context, ComponentFailedError) else ""
-    return f"{_short(': '.join(filter(None, (failed, told(error)))))}{place}"
+    return f"{_short(': '.join(filter(None, (failed, told(raised)))))}{place}"
 
 
 def _short(text: str) -> str:

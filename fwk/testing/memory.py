@@ -229,10 +229,12 @@ class MemorySystem:
 
     @staticmethod
     def _call(work: Callable[[], T]) -> T:
-        """Lets a host work; exceptions of a component leave as they were raised."""
+        """Lets a host work; exceptions of a component leave as they were raised, unless they would end the program."""
         try:
             return work()
         except ComponentFailedError as failure:
+            if isinstance(failure.__cause__, SystemExit):
+                raise
             raise failure.__cause__ or failure from None
 
 

@@ -29,9 +29,23 @@ class Crash(Component):
             raise UnpicklableError("no", "way")
 
 
+class Leave(Component):
+    """Ends the program."""
+
+    stage = "act"
+
+    def loop(self) -> None:
+        raise SystemExit(0)
+
+
 def measured(file: str, time_s: float, seed: int) -> None:
     """Runs the components, of which one fails."""
     MemorySystem({"it/well": Idle, "it/crash": Crash}).tick(2)
+
+
+def left(file: str, time_s: float, seed: int) -> None:
+    """Runs the components, of which one ends the program."""
+    MemorySystem({"it/well": Idle, "it/leave": Leave}).tick(2)
 
 
 def report(results: object, folder: Path) -> str:
@@ -39,10 +53,13 @@ def report(results: object, folder: Path) -> str:
     return ""
 
 
-def test_failed_component_and_its_place_are_named(launch: Path) -> None:
-    launch.write_text(LAUNCH.replace("cli_eval_parts:measured", "test_cli_eval_failing:measured"))
+@pytest.mark.parametrize(
+    ("work", "error"), [("measured", "it/crash: UnpicklableError: no way"), ("left", "it/leave: SystemExit: 0")]
+)
+def test_failed_component_and_its_place_are_named(launch: Path, work: str, error: str) -> None:
+    launch.write_text(LAUNCH.replace("cli_eval_parts:measured", f"test_cli_eval_failing:{work}"))
     code, _, said = evaluated(str(launch), "--seeds", "1..3", "--jobs", "2")
-    cause = r"seeds 1, 2, 3: it/crash: UnpicklableError: no way \(.*/test_cli_eval_failing\.py:\d+\)"
+    cause = rf"seeds 1, 2, 3: {error} \(.*/test_cli_eval_failing\.py:\d+\)"
     assert (code, bool(re.search(f"error: 3 of 3 runs failed: {cause}\n", said))) == (1, True)
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from fwk.testing import launch_plan
 from procs.scenarios import command
+from procs.scenarios.scripted import Script
 
 ROOT = Path(__file__).parents[3]
 COMMAND = (sys.executable, "-m", "procs.scenarios")
@@ -45,6 +46,27 @@ def test_mistake_that_a_run_shows_is_no_failure(
         assert shown.err.count(f"{wrong}:2: ") == 1
         assert "good" in shown.out
         assert "wrong" not in shown.out
+
+
+def test_component_that_ends_the_program_fails_its_scenario(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With and without seeds."""
+    good, left = tmp_path / "good.yaml", tmp_path / "left.yaml"
+    for file, robots in ((left, "scripted: {cyan2: [{}]}"), (good, "dummies: [cyan2]")):
+        file.write_text(f"{robots}\nalways: [x(cyan2) < 0]\ntime_s: 0.2\n")
+
+    def leave(script: Script) -> None:
+        if script.clock.tick == 2:
+            raise SystemExit(0)
+
+    monkeypatch.setattr(Script, "loop", leave)
+    for words in ([], ["--seeds", "3..4"]):
+        monkeypatch.setattr("sys.argv", ["scenarios", str(left), str(good), *words])
+        assert command.main() == 1
+        shown = capsys.readouterr().out
+        assert "SystemExit: 0" in shown
+        assert "good" in shown
 
 
 @pytest.mark.parametrize(
