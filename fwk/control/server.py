@@ -104,8 +104,13 @@ class Connection:
             self.close()
             return []
         *found, self._request = (self._request + data).split(b"\n")
-        if len(self._request) > REQUEST_MAX or len(found) > REQUESTS_MAX:
-            self.refuse(f"a request has at most {REQUEST_MAX} bytes, and at most {REQUESTS_MAX} may come at once")
+        wrong = ""
+        if len(self._request) > REQUEST_MAX:
+            wrong = f"a request, with all texts in it, has at most {REQUEST_MAX:,} bytes; send shorter texts"
+        elif len(found) > REQUESTS_MAX:
+            wrong = f"{len(found)} requests at once; send at most {REQUESTS_MAX}"
+        if wrong:
+            self.refuse(wrong)
             self.close()
             return []
         return found

@@ -128,14 +128,15 @@ def test_an_endless_request_ends_the_connection(listening: Server, connect: Conn
         listening.handle()
     sender.join()
     connection.settimeout(0.2)
-    assert "at most" in answers(listening, connection)[-1]["error"]
+    said = "a request, with all texts in it, has at most 65,536 bytes; send shorter texts"
+    assert answers(listening, connection)[-1]["error"] == said
 
 
 def test_too_many_requests_at_once_end_the_connection(listening: Server, connect: Connect) -> None:
     connection = connect()
     connection.sendall(b'{"verb":"run"}\n' * (server.REQUESTS_MAX + 1))
     (answer,) = answers(listening, connection)
-    assert "may come at once" in answer["error"]
+    assert answer["error"] == "65 requests at once; send at most 64"
 
 
 def test_a_client_that_does_not_read_delays_no_other(listening: Server, connect: Connect) -> None:
