@@ -77,7 +77,7 @@ def test_measured_speeds_are_the_mean_over_the_tick() -> None:
     assert robot.drive.measured_m_s() == robot.drive.wheels_m_s
 
 
-def test_measured_speeds_are_the_way_of_commands_and_stuck_wheels() -> None:
+def test_measured_speeds_count_new_commands_and_stuck_wheels() -> None:
     world = one_robot(Noise(drive_delay_s=0.03), Pose(0.0, 0.0, 0.0))
     motors, step_us, way_m = world.robots["cyan1"].drive, 500, np.zeros(3)
     motors.measured_m_s()

@@ -156,9 +156,7 @@ def test_fwk_call_waits_for_a_component_that_restarts(launch: Launch, folder: Pa
     assert begun(Recording(run.end())) == []
 
 
-def test_a_component_that_restarts_in_a_tick_is_called_in_the_next(
-    launch: Launch, folder: Path, ports: PortBlock
-) -> None:
+def test_a_restart_within_a_tick_gets_the_call_in_the_next(launch: Launch, folder: Path, ports: PortBlock) -> None:
     """The lifter ends in its iteration and restarts in the same tick, before the call becomes visible."""
     restarts_late(folder)
     run = started(launch, ports)
