@@ -29,8 +29,9 @@ class Frame(NamedTuple):
         return Point(self.sign * x_m + 0.0, self.sign * y_m + 0.0)  # no -0.0, whose sign would be a side
 
     def heading_rad(self, heading_rad: float) -> float:
-        """Returns a direction in the other frame."""
-        return heading_rad if self.sign > 0 else wrap_rad(heading_rad + math.pi)
+        """Returns a direction in the other frame; one that is no angle stays, for the skiller to refuse."""
+        same = self.sign > 0 or not math.isfinite(heading_rad)
+        return heading_rad if same else wrap_rad(heading_rad + math.pi)
 
 
 class Agreement(NamedTuple):

@@ -65,3 +65,9 @@ def test_silent_mate_is_in_the_way_but_no_player() -> None:
 def test_zero_of_one_team_is_that_of_the_other() -> None:
     turned = [Frame(sign).point(0.0, -0.0) for sign in (1.0, -1.0)]
     assert [math.copysign(1.0, value) for point in turned for value in point] == [1.0] * 4
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_heading_that_is_no_angle_stays_so_in_both_frames(sign: float) -> None:
+    assert Frame(sign).heading_rad(math.inf) == math.inf
+    assert math.isnan(Frame(sign).heading_rad(math.nan))
