@@ -66,7 +66,7 @@ class PlaceConfig(Config):
     names: Annotated[dict[str, int], Alike] = {"fern": 1}
     """Numbers of plants."""
     gain: float = 0.5
-    """Of each."""
+    """A setting in which gardeners may differ."""
 
 
 class Gardener(Component):

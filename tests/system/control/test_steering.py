@@ -173,7 +173,7 @@ def test_a_hanging_component_is_named_and_can_be_stopped(run: Steered) -> None:
 def test_a_component_that_waits_for_its_restart_can_be_stopped(
     tmp_path: Path, ports: PortBlock, launch: Launch, paused: bool
 ) -> None:
-    """It ends between two ticks of a run that is paused, otherwise in its iteration."""
+    """The component ends between two ticks of a run that is paused, otherwise in its iteration."""
     write_system(tmp_path, ports)
     file = tmp_path / "small.yaml"
     file.write_text(file.read_text().replace("{limit: 1}", "{limit: 1, backoff_s: 3600}"))
