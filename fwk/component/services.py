@@ -170,7 +170,7 @@ class Serves(Generic[Q, R]):
         """Begins an iteration: takes in the requests of the frozen inputs."""
         arrived = [(source, Header.of(data), data) for source in self._sources for data in source.arrived]
         if self._fresh_start:
-            self._fresh_start = False
+            self._take_part()
             if self._clock.tick > 1:
                 self._forget()
                 return
@@ -181,6 +181,10 @@ class Serves(Generic[Q, R]):
         arrived.sort(key=lambda each: (each[1].tick, each[1].stage, each[0].client, each[1].sequence))
         for source, header, data in arrived:
             self._queue(source, header, data)
+
+    def _take_part(self) -> None:
+        """Notes that the component takes part in the run: no later request was sent before its start."""
+        self._fresh_start = False
 
     def _end(self) -> None:
         """Ends the service: its unfinished requests have failed."""

@@ -187,6 +187,10 @@ class Runner:
         clock.tick = stamp.tick = tick
         clock.now_us = stamp.time_us = time_us
         clock.stage, stamp.stage = stage_name, stage
+        if tick == 1:  # it takes part from the start, so no request that waits was sent before
+            for service in self._services:
+                if isinstance(service, Serves):
+                    service._take_part()
 
     def finalize(self, tick: int, time_us: int) -> list[tuple[str, bytes]]:
         """Finalizes the component; returns what it wrote, stamped with the given tick."""

@@ -128,6 +128,16 @@ def test_receiver_started_later_ignores_earlier_commands(parts: Any) -> None:
     assert [sent.height_m for sent in bench.port("lifted").sent] == [2.0]
 
 
+@pytest.mark.parametrize(("before", "state"), [(0, answer_t.ACCEPTED), (10, answer_t.FORGOTTEN)])
+def test_a_first_iteration_after_tick_1_is_no_later_start(parts: Any, before: int, state: int) -> None:
+    """A component that iterates in each third tick takes part from the first one, unless it is started later."""
+    bench = Bench(parts.Lifter, every=3)
+    bench.tick = before
+    bench.port("lift").put(height_m=1.0)
+    bench.iterate(3)
+    assert [(number, said) for number, said, _ in answers(bench)] == [(1, state)]
+
+
 def test_the_sender_of_a_lost_command_is_informed(parts: Any) -> None:
     bench = Bench(parts.Lifter)
     lift = bench.port("lift")
