@@ -23,7 +23,10 @@ def digests_of(plan: Plan) -> dict[str, str]:
     Runs of other components are not mixed in. The settings of the run tell whether those typed with --set do the same.
     """
     played = [
-        (each.name, each.module, each.class_name, each.config, each.channels, each.every, each.offset)
+        (
+            *(each.name, each.module, each.class_name, each.config, each.channels),
+            *(each.stages, each.rate_hz, each.every, each.offset),
+        )
         for each in plan.components
     ]
     paced = (plan.clock, plan.speed, plan.stage_time_us, plan.loop_time_us, plan.loop_time_warnings, plan.public_url)

@@ -7,6 +7,7 @@ from itertools import takewhile
 from typing import Any
 
 from fwk.component.declaration import declaration
+from fwk.lcm.messages import type_named
 from fwk.model.plan import ComponentPlan, Plan
 from fwk.model.service_channels import service_of
 from fwk.plan.load import LaunchOptions, load_plan
@@ -34,7 +35,7 @@ def settings_in(file: str, component: str) -> dict[str, Any]:
 
 def system_of(
     file: str,
-    wanted: Callable[[str], bool] = bool,
+    wanted: Callable[[str], bool] | None = None,
     seed: int = 1,
     sets: Sequence[str] = (),
     **changes: dict[str, Any],
@@ -43,7 +44,7 @@ def system_of(
 
     Args:
         file: launch file.
-        wanted: chooses components by name.
+        wanted: chooses components by name; by default all that start with the run. Channels of the others are silent.
         seed: of the components' random numbers.
         sets: settings to override, as `--set` takes them: `a/camera.errors.delay_s=0.1`.
         changes: further settings by the component's own name: `camera={"flicker": 0.1}`.
@@ -52,7 +53,7 @@ def system_of(
         PlanError: the launch file or an overridden setting has mistakes.
     """
     plan = launch_plan(file, tuple(sets))
-    found = [each for each in plan.components if wanted(each.name)]
+    found = [each for each in plan.components if (wanted(each.name) if wanted else each.start)]
     return MemorySystem(
         {each.name: _class(each) for each in found},
         {each.name: {**each.config, **changes.get(each.name.rpartition("/")[2], {})} for each in found},
@@ -60,8 +61,9 @@ def system_of(
         seed,
         period_s=plan.period_us / 1e6,
         stages=plan.stages,
-        turns={each.name: (each.every, each.offset) for each in found},
+        outside={name: type_named(kind) for name, kind in plan.outside.items()},
         hosting="single",
+        launched=plan,
     )
 
 

@@ -36,8 +36,9 @@ class MemorySystem:
 
     `MemorySystem({"cyan1/base": Base, ...}, settings={"cyan1/base": {...}})`, then `tick()`. The messages are those
     of the same components in processes. A test writes the channels of `outside`, given with their types, with
-    `come_in`. `turns` are `every` and `offset` of components, where they differ from the class. `hosting` means the
-    same as for `fwk-launch`: messages between components of one host are not packed, so `single` is the fastest.
+    `come_in`. `turns` are `every` and `offset` of components, where they differ from the class; `launched` is the
+    plan of a launch file, as `plan_of` takes it. `hosting` means the same as for `fwk-launch`: messages between
+    components of one host are not packed, so `single` is the fastest.
 
     Raises:
         ValueError: the components do not fit together.
@@ -54,6 +55,7 @@ class MemorySystem:
         outside: Mapping[str, type[messages.Message]] | None = None,
         turns: Mapping[str, tuple[int, int]] | None = None,
         hosting: Hosting = "process",
+        launched: Plan | None = None,
     ) -> None:
         for name, kind in components.items():
             if "plugins" in declaration(kind).aspects.values():
@@ -69,6 +71,7 @@ class MemorySystem:
             outside={name: messages.type_name(kind) for name, kind in (outside or {}).items()},
             log=LogPlan(lines_per_s=0),
             turns=turns,
+            launched=launched,
         )
         self.now_us = 0
         self.ticks = 0

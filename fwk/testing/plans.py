@@ -5,7 +5,7 @@ from typing import Any
 
 from fwk.clock import US_PER_S
 from fwk.component.component import DEFAULT_STAGES, Component
-from fwk.component.declaration import declaration
+from fwk.component.declaration import Declaration, declaration
 from fwk.lcm.messages import type_named
 from fwk.model.plan import ComponentPlan, HostPlan, Plan
 from fwk.model.sections import RestartPolicy
@@ -24,21 +24,32 @@ def plan_of(
     stages: tuple[str, ...] = DEFAULT_STAGES,
     restart: RestartPolicy | None = None,
     turns: Mapping[str, tuple[int, int]] | None = None,
+    launched: Plan | None = None,
     **fields: Any,
 ) -> Plan:
     """Returns the plan of some components; those of a group share a process, each other one has its own.
 
-    `turns` are `every` and `offset` by component, where they differ from the class.
+    `turns` are `every` and `offset` by component, where they differ from the class. `launched` is the plan of a launch
+    file that has these components and others: its stages, rates, turns and providers are theirs, and channels that only
+    the others write are silent.
 
     Raises:
         ValueError: the components do not fit together.
     """
     mistakes: list[str] = []
+    ran = {each.name: each for each in launched.components} if launched else {}
+    written = {each.name: each.writer for each in launched.channels} if launched else {}
     specs = [
-        ComponentSpec(name, declaration(kind), (channels or {}).get(name, {})) for name, kind in components.items()
+        ComponentSpec(
+            name,
+            declaration(kind),
+            (channels or {}).get(name, {}),
+            _providers(launched, ran[name], declaration(kind), written) if launched else {},
+        )
+        for name, kind in components.items()
     ]
     outside = {channel: type_named(kind) for channel, kind in fields.get("outside", {}).items()}
-    wiring = wire(specs, lambda name, _, text: mistakes.append(f"{name}: {text}"), outside)
+    wiring = wire(specs, lambda name, _, text: mistakes.append(f"{name}: {text}"), outside, written.__contains__)
     if mistakes:
         raise ValueError("\n".join(mistakes))
     names, granted = list(components), granted_by(specs, wiring)
@@ -49,7 +60,6 @@ def plan_of(
     planned = []
     for index, (spec, ports) in enumerate(zip(specs, wiring.ports, strict=True)):
         kind, config_type = spec.declaration.component, spec.declaration.config
-        every, offset = (turns or {}).get(spec.name, (spec.declaration.every, spec.declaration.offset))
         config = config_type(**(settings or {}).get(spec.name, {})).model_dump()
         planned.append(
             ComponentPlan(
@@ -57,17 +67,14 @@ def plan_of(
                 name=spec.name,
                 module=kind.__module__,
                 class_name=kind.__qualname__,
-                stages=tuple(stages.index(stage) for stage in spec.declaration.stages),
                 config=config,
                 origins={},
                 channels=ports,
                 host=host_of[spec.name],
                 restart=restart or RestartPolicy(),
-                rate_hz=spec.declaration.rate_hz,
-                every=every,
-                offset=offset,
                 opens="blackboard" in spec.declaration.aspects.values(),
                 needs=tuple(sorted(map(names.index, granted.get(spec.name, ())))),
+                **_iterations(spec, stages, turns or {}, ran),
             )
         )
     hosts = [
@@ -92,6 +99,33 @@ def plan_of(
             **fields,
         }
     )
+
+
+def _providers(
+    launched: Plan, component: ComponentPlan, declared: Declaration, written: Mapping[str, int]
+) -> dict[str, str]:
+    """Returns the provider of each aspect of a component: the writer of the channels of the aspect."""
+    return {
+        port.attribute.partition(".")[0]: launched.components[written[name]].name
+        for port in declared.ports
+        if "." in port.attribute and not port.each
+        for name in component.channels[port.attribute]
+    }
+
+
+def _iterations(
+    spec: ComponentSpec,
+    stages: Sequence[str],
+    turns: Mapping[str, tuple[int, int]],
+    ran: Mapping[str, ComponentPlan],
+) -> dict[str, Any]:
+    """Returns when a component iterates: stages, rate, `every` and `offset`."""
+    declared = spec.declaration
+    if said := ran.get(spec.name):
+        return {"stages": said.stages, "rate_hz": said.rate_hz, "every": said.every, "offset": said.offset}
+    every, offset = turns.get(spec.name, (declared.every, declared.offset))
+    indices = tuple(stages.index(stage) for stage in declared.stages)
+    return {"stages": indices, "rate_hz": declared.rate_hz, "every": every, "offset": offset}
 
 
 def alone(component: type[Component], name: str) -> Plan:

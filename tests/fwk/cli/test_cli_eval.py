@@ -103,8 +103,9 @@ def test_changed_launch_file_is_another_campaign(launch: Path) -> None:
     assert evaluated(str(launch), "--seeds", "1", "--jobs", "1")[0] == 0
     launch.write_text("# The same system.\n" + LAUNCH)
     assert evaluated(str(launch), "--seeds", "1..2", "--jobs", "1")[:2] == (0, "1 2\n")
-    for change in ("period_s: 0.1\n", "stages: [think, act]\n"):
-        launch.write_text(LAUNCH + change)
+    staged = LAUNCH.replace("Idle}", "Idle, stage: think}")
+    for changed in (f"{LAUNCH}period_s: 0.1\n", f"{LAUNCH}stages: [think, act]\n", staged):
+        launch.write_text(changed)
         code, _, said = evaluated(str(launch), "--seeds", "1..3", "--jobs", "1")
         assert (code, "another campaign: its launch file had other components or settings" in said) == (2, True)
 
