@@ -14,6 +14,9 @@ from fwk.model.selection import matches
 from fwk.plan.files.launch_file import shown
 from fwk.plan.files.source import read_value
 
+REFUSED_LATER = "the next run would refuse it, so nothing was set; it can be set for this run alone, without keeping it"
+"""Follows the mistakes that settings would be in the files, such as one that other components do not share."""
+
 
 @dataclass(frozen=True)
 class Kept:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from fwk.control.client import RefusedError
+from fwk.control.host_file import REFUSED_LATER
 from fwk.web.job import Job
 
 Values = dict[tuple[str, str], Any]
@@ -21,6 +22,18 @@ async def values_in_file(file: str) -> Values:
     if await Job(["fwk", "config", "list", "--file", file, "--json"], told.append).run():
         raise RefusedError("".join(told).strip() or f"{file}: cannot be read")
     return {(row["component"], row["setting"]): row["value"] for row in json.loads("".join(told))}
+
+
+async def check_kept(file: str, changes: Sequence[str]) -> None:
+    """Checks that a launch file can have settings, `NAME.SETTING=VALUE` each, which a run has taken.
+
+    Raises:
+        RefusedError: it cannot; the mistakes are named.
+    """
+    told: list[str] = []
+    sets = [word for each in changes for word in ("--set", each)]
+    if await Job(["fwk", "check", file, *sets], told.append).run():
+        raise RefusedError(f"{''.join(told).strip()}\n{REFUSED_LATER}")
 
 
 def differing(rows: Sequence[dict[str, Any]], values: Values) -> list[dict[str, Any]]:

@@ -16,6 +16,7 @@ from fwk.lcm import messages
 from fwk.model.service_channels import OUTSIDE, service_channel
 from fwk.plan.files.launch_file import host_file, shown
 from fwk.web.access import Role
+from fwk.web.file_settings import check_kept
 from fwk.web.recorded_link import RecordedLink
 from fwk.web.run_link import RunLink
 from fwk.web.scene import Newest, Scene
@@ -133,7 +134,9 @@ class RunAccess:
         origin = "fwk web"
         if save:
             await self.link.ask("set", changes=list(changes), check=True)
-            file = host_file(Path((await self.link.about())["file"]))
+            launch_file = (await self.link.about())["file"]
+            await check_kept(launch_file, changes)
+            file = host_file(Path(launch_file))
             try:
                 await asyncio.to_thread(keep, file, [Kept.of(each) for each in changes])
             except KeepError as error:

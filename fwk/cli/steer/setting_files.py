@@ -8,7 +8,7 @@ from typing import Any
 
 import typer
 
-from fwk.control.host_file import KeepError, Kept, forget, keep
+from fwk.control.host_file import REFUSED_LATER, KeepError, Kept, forget, keep
 from fwk.control.requests import RequestError
 from fwk.control.settings import RunSettings
 from fwk.control.settings_diff import differences
@@ -16,7 +16,8 @@ from fwk.model.errors import PlanError
 from fwk.plan.classes import UnusableError
 from fwk.plan.files.json_schema import schema_of_component, schema_of_file, schema_of_files
 from fwk.plan.files.launch_file import host_file, shown
-from fwk.plan.load import load_plan
+from fwk.plan.files.overrides import PLACE
+from fwk.plan.load import LaunchOptions, load_plan
 from fwk.program import BAD_INPUT, FAILED
 
 
@@ -41,7 +42,16 @@ def schema_of(of: str, host: bool) -> dict[str, Any]:
 
 
 def keep_beside(launch_file: str, changes: list[str]) -> str:
-    """Keeps settings in the host-specific file of a launch file; returns that file's name as people see it."""
+    """Keeps settings in the host-specific file of a launch file; returns that file's name as people see it.
+
+    A run takes settings that its launch file cannot have, such as a field that only one component knows.
+    """
+    try:
+        load_plan(launch_file, LaunchOptions(sets=changes))
+    except PlanError as error:
+        mistakes = "\n".join(str(each).removeprefix(f"{PLACE}: ") for each in error.problems)
+        typer.echo(f"error: {mistakes}\n{REFUSED_LATER}", err=True)
+        raise typer.Exit(BAD_INPUT) from error
     file = host_file(Path(launch_file))
     try:
         keep(file, [Kept.of(each) for each in changes])

@@ -123,12 +123,45 @@ def test_a_call_that_is_not_carried_out_is_an_error(state: str, said: str) -> No
         asyncio.run(access(Run(Path(), state=state)).call("world/place_ball", {"x_m": 2.0}))
 
 
-def test_settings_are_kept_for_later_runs_of_this_machine(tmp_path: Path) -> None:
-    run = Run(tmp_path / "garden.yaml")
+MOWER = """
+from typing import Annotated
+
+from fwk import Alike, Component, Config
+
+class MowerConfig(Config):
+    radius_m: float = 3.0
+    lawn_m2: Annotated[float, Alike] = 50.0
+
+class Mower(Component):
+    stage = "act"
+    config: MowerConfig
+"""
+
+
+@pytest.fixture
+def garden(tmp_path: Path) -> Path:
+    (tmp_path / "mower.py").write_text(MOWER)
+    file = tmp_path / "garden.yaml"
+    file.write_text("components: {a/mower: {use: mower}, b/mower: {use: mower}}\n")
+    return file
+
+
+def test_settings_are_kept_for_later_runs_of_this_machine(garden: Path, tmp_path: Path) -> None:
+    run = Run(garden)
     asyncio.run(access(run).set(["a/mower.radius_m=3.5"], save=True))
     assert "radius_m: 3.5" in (tmp_path / "garden.host.yaml").read_text()
     assert [each.get("check", False) for each in run.asked] == [True, False]
     assert run.asked[1]["origin"].endswith("garden.host.yaml")
+
+
+def test_settings_that_a_later_run_refuses_are_not_kept(garden: Path, tmp_path: Path) -> None:
+    run = Run(garden)
+    with pytest.raises(RefusedError, match=r"(?s)all components have to agree.*the next run would refuse it"):
+        asyncio.run(access(run).set(["a/mower.lawn_m2=60"], save=True))
+    assert [each["check"] for each in run.asked] == [True]
+    assert not (tmp_path / "garden.host.yaml").exists()
+    asyncio.run(access(run).set(["*/mower.lawn_m2=60"], save=True))
+    assert "lawn_m2: 60" in (tmp_path / "garden.host.yaml").read_text()
 
 
 def test_refused_settings_are_not_kept(tmp_path: Path) -> None:
