@@ -20,10 +20,12 @@ from fwk.model.plan import ComponentPlan, Plan
 from fwk.model.selection import dot_for_slash, matches, nearest
 from fwk.plan.channel_settings import mistakes_with_channels
 from fwk.plan.files.overrides import EXAMPLE, PLACE, RUN_KEYS, SHARED, overrides
+from fwk.plan.files.schema import EVERY, OFFSET
 from fwk.plan.files.settings import effective
 from fwk.plan.files.source import Node
 
 _NOW = "now"
+_FIXED = "cannot change during a run; set it in the launch file and restart the run"
 _LIMITS = {"gt": "more than", "ge": "at least", "lt": "less than", "le": "at most"}
 
 
@@ -127,6 +129,10 @@ class RunSettings:
         if not layers:
             return None
         kind = _config_class(component)
+        for name in (EVERY, OFFSET):  # stand among the settings in launch files only
+            if name not in kind.model_fields and any(layer.child(name) for layer in layers):
+                problems.add("", component.name, f"'{name}' {_FIXED}")
+                return None
         texts: list[str] = []
         now = _node(self._asked.get(component.index, self._values[component.index]))
         values, origins = effective(kind, [now, *layers], "", lambda _, text: texts.append(text))
@@ -138,7 +144,7 @@ class RunSettings:
             if isinstance(keys := _value(values, path), dict) and keys
         ]
         texts += [
-            f"'{name}' cannot change during a run; set it in the launch file and restart the run"
+            f"'{name}' {_FIXED}"
             for name, value in said.items()
             if not _described(kind, name)["editable"] and value != _value(self._values[component.index], name)
         ]

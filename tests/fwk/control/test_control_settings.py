@@ -76,6 +76,14 @@ def values(settings: RunSettings, pattern: str) -> dict[str, object]:
     return {f"{row['component']}.{row['setting']}": row["value"] for row in settings.rows([pattern])}
 
 
+@pytest.mark.parametrize("typed", ["a/turner.every=2", "a/turner.offset=0", "*/plain.every=2"])
+def test_every_and_offset_stay_as_they_are(settings: RunSettings, typed: str) -> None:
+    """Launch files and --set have them among the settings."""
+    name = typed.partition("=")[0].rpartition(".")[2]
+    with pytest.raises(RequestError, match=f": '{name}' cannot change during a run; set it in the launch file"):
+        settings.check([typed])
+
+
 def test_a_fixed_setting_stays_as_it_is(settings: RunSettings) -> None:
     (row,) = settings.rows(["a/turner.fixed"])
     assert (row["setting"], row["editable"]) == ("fixed.deep", False)
