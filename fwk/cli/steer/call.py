@@ -13,6 +13,7 @@ from fwk.cli.steer.send import Fields, made
 from fwk.control import runs
 from fwk.control.client import Client, ControlError, RefusedError
 from fwk.lcm import messages
+from fwk.lcm.comments import NEEDED, comment_of
 from fwk.lcm.messages import MessageError
 from fwk.lcm.type_registry import use_types_of
 from fwk.model.errors import hint
@@ -118,9 +119,24 @@ def _encoded(gateway: Client, name: str, fields: list[str], chosen: str | None) 
     for folder in ask(chosen, "run")["folders"]:
         use_types_of(Path(folder))
     try:
-        return messages.encode(made(known[name], fields), name)
+        return messages.encode(command_of(known[name], fields), name)
     except MessageError as error:
         raise RefusedError(str(error)) from error
+
+
+def command_of(type_name: str, fields: list[str]) -> Any:
+    """Returns a command with these fields set, as `made` does.
+
+    Raises:
+        MessageError: besides, a field is missing that has to be given by the comment beside it.
+    """
+    command = made(type_name, fields)
+    given = {text.partition("=")[0].partition(".")[0] for text in fields}
+    for member, kind in zip(command.__slots__, command.__typenames__, strict=True):
+        if member not in given and NEEDED in comment_of(type_name, member):
+            right = f"{member}=true or {member}=false" if kind == "boolean" else f"{member}=VALUE"
+            raise MessageError(f"'{member}' of {type_name} is missing; write {right}")
+    return command
 
 
 def _sentence(last: dict[str, Any], timeout_s: float) -> str:
