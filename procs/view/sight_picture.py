@@ -16,7 +16,7 @@ import numpy as np
 
 from fwk.program import BAD_INPUT, FAILED, complain
 from fwk.testing import MemorySystem, PlanError, launch_plan, settings_in, system_of
-from fwk.testing.campaign import failure_of
+from fwk.testing.evaluation import failure_of
 from fwk.testing.seeds import seed_argument
 from lcmtypes.core import picture_t
 from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t

@@ -24,9 +24,11 @@ from fwk.plan.files.launch_file import FOLDER, INSTALLED
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.what_ran import imported_modules
 from fwk.program import BAD_INPUT, FAILED
-from fwk.testing.campaign import Campaign, Evaluation, FolderError, cure_of, failure_of, listed
+from fwk.testing.campaign import Campaign, listed
 from fwk.testing.differing import digest_of, digests_of
+from fwk.testing.evaluation import Evaluation, failure_of
 from fwk.testing.executors import CampaignError, executor_of
+from fwk.testing.results import FolderError, cure_of
 from fwk.testing.seeds import seeds_of
 
 _RUN_S = 25.0

@@ -12,8 +12,9 @@ import psutil
 import pytest
 
 from fwk.cli.recordings import evaluate
-from fwk.testing.campaign import Campaign, FolderError
+from fwk.testing.campaign import Campaign
 from fwk.testing.executors import CampaignError
+from fwk.testing.results import FolderError
 from tests.fwk.cli import cli_eval_parts
 from tests.fwk.cli.cli_eval_parts import measured
 from tests.fwk.cli.cli_eval_tools import LAUNCH, Queue, evaluated

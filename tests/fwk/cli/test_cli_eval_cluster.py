@@ -19,7 +19,8 @@ import pytest
 from fwk.cli.recordings import evaluate
 from fwk.plan.what_ran import hash_of_module
 from fwk.testing import executors
-from fwk.testing.campaign import Campaign, Evaluation
+from fwk.testing.campaign import Campaign
+from fwk.testing.evaluation import Evaluation
 from fwk.testing.executors import CampaignError, executor_of
 from tests.fwk.cli.cli_eval_parts import measured
 from tests.fwk.cli.cli_eval_tools import Queue, evaluated

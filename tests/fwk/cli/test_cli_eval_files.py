@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from fwk.testing.campaign import Campaign, FolderError
+from fwk.testing.campaign import Campaign
+from fwk.testing.results import FolderError
 from tests.fwk.cli.cli_eval_tools import evaluated
 
 MADE: dict[str, Callable[[Path], None]] = {

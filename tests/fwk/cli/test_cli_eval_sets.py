@@ -9,8 +9,8 @@ import pytest
 
 from fwk import Component, Config
 from fwk.plan.load import load_plan
-from fwk.testing.campaign import Evaluation
 from fwk.testing.differing import digests_of
+from fwk.testing.evaluation import Evaluation
 from fwk.testing.executors import CampaignError
 from fwk.testing.launched import system_of
 from tests.fwk.cli.cli_eval_tools import LAUNCH, evaluated
