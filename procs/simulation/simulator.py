@@ -304,10 +304,11 @@ class Simulator(Component):
         if now_us - self._battery_us < _BATTERY_US:
             return
         self._battery_us = now_us
-        for name, writer in self.battery_state.items():
-            state, battery = writer.value, batteries[name]
-            state.charge, state.voltage_v, state.capture_us = battery.charge, battery.voltage_v, now_us
-            writer.write()
+        for name, battery in batteries.items():
+            if name in self.battery_state:
+                state = self.battery_state[name].value
+                state.charge, state.voltage_v, state.capture_us = battery.charge, battery.voltage_v, now_us
+                self.battery_state[name].write()
 
     def _report_truth(self) -> None:
         truth, ball, players = self.ground_truth.value, self._world.ball, self._players

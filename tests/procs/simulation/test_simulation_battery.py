@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from fwk.testing import Bench
-from lcmtypes.robot import kicker_drive_t, wheel_command_t
+from fwk import Component, Reads
+from fwk.testing import Bench, MemorySystem
+from lcmtypes.robot import battery_state_t, kicker_drive_t, wheel_command_t
+from lcmtypes.soccer import ball_placement_t
 from procs.model.kinematics import Velocity, wheels_of
 from procs.simulation.physics.battery import Battery
 from procs.simulation.physics.kick_mechanism import KickerCommand
@@ -116,6 +118,27 @@ def test_empty_battery_stops_its_robot_and_is_told_once() -> None:
         for robot in ("cyan1", "cyan2")
     ]
     assert world.port("battery_state", "cyan2").sent[-1].charge == 0.0
+
+
+class Gauge(Component):
+    """Reads the battery of its namespace."""
+
+    stage = "think"
+    battery_state: Reads[battery_state_t]
+
+    def loop(self) -> None:
+        pass
+
+
+def test_namespace_without_wheels_has_no_battery() -> None:
+    """As with `fwk-launch --without cyan1/base`: the rest of the robot still reads its battery."""
+    system = MemorySystem(
+        {"world/simulator": Simulator, "cyan1/gauge": Gauge, "cyan2/gauge": Gauge},
+        outside={"cyan2/wheel_command": wheel_command_t, "world/ball_placement": ball_placement_t},
+    )
+    system.tick()
+    assert not system.sent["cyan1/battery_state"]
+    assert system.newest("cyan2/battery_state").charge > 0.9
 
 
 @pytest.mark.parametrize("value", [-1.0, math.nan, math.inf])
