@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import cv2
@@ -36,6 +36,8 @@ class RecordedPicture:
     """Height, width, channels."""
     format: str
     data: bytes
+    is_frame: bool = False
+    """Whether the recorder has written it, without loss; others are sent by components."""
 
     def pixels(self) -> NDArray[np.uint8] | None:
         """Returns an array height x width, or height x width x 3 (blue, green, red); None if the data are damaged."""
@@ -92,4 +94,4 @@ def pictures_in(log: Path) -> Iterator[RecordedPicture]:
     for event in LogReader(log):
         picture = picture_of(event.data)
         if picture:
-            yield picture
+            yield replace(picture, is_frame=event.channel == FRAME)

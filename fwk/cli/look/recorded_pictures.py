@@ -15,16 +15,19 @@ from fwk.recording.replay.recording import Recording, RecordingError
 
 
 class Recorded:
-    """Pictures of a log, up to a tick if one is given."""
+    """Pictures of a log, up to a tick if one is given; of a camera whose frames were recorded, the frames alone."""
 
     def __init__(self, log: Path, tick: int | None) -> None:
         self._log = log
         self._tick = tick
         self._counts: dict[str, int] = {}
         self._last: dict[str, RecordedPicture] = {}
-        for picture in self._pictures():
-            self._counts[picture.camera] = self._counts.get(picture.camera, 0) + 1
-            self._last[picture.camera] = picture
+        for picture in self._upto():
+            last = self._last.get(picture.camera)
+            if last is None or picture.is_frame >= last.is_frame:
+                former = self._counts[picture.camera] if last and picture.is_frame == last.is_frame else 0
+                self._counts[picture.camera] = former + 1
+                self._last[picture.camera] = picture
         if not self._counts:
             upto = f" up to tick {tick}" if tick else ""
             how = "'record: {frames: ...}' in the launch file, or a component that compresses pictures, records some"
@@ -54,12 +57,12 @@ class Recorded:
     def save_all(self, name: str, folder: Path) -> int:
         """Writes all pictures of a camera as numbered png files; returns their number."""
         camera = self._camera(name)
-        for picture in self._pictures():
-            if picture.camera == camera:
+        for picture in self._upto():
+            if picture.camera == camera and picture.is_frame == self._last[camera].is_frame:
                 picture_output.save(self._decoded(picture), folder / f"frame{picture.frame:06}.png")
         return self._counts[camera]
 
-    def _pictures(self) -> Iterator[RecordedPicture]:
+    def _upto(self) -> Iterator[RecordedPicture]:
         return (each for each in pictures_in(self._log) if self._tick is None or each.tick <= self._tick)
 
     def _camera(self, name: str) -> str:

@@ -64,6 +64,20 @@ def test_saved_frames_can_be_read_by_the_camera_driver(log: Path) -> None:
     assert names == ["frame000001.png", "frame000002.png", "frame000004.png"]
 
 
+def test_recorded_frames_count_instead_of_sent_pictures(tmp_path: Path) -> None:
+    first, second = (("world/pictures", 1), ("fwk/frame", 1)), (("fwk/frame", 2), ("world/pictures", 2))
+    with LogWriter(tmp_path / "log.lcm", print) as writer:
+        for channel, frame in (*first, *second):
+            data = cv2.imencode(".png", NOISE if channel == "fwk/frame" else NOISE // 2)[1].tobytes()
+            picture = picture_t(camera="cyan1/image", frame=frame, format="png", data=data, n=len(data))
+            writer.append(channel, picture.encode(), 0)
+    words, all_of_it = ("--log", tmp_path / "log.lcm"), tmp_path / "all"
+    assert "cyan1/image          2 pictures (png)" in cam(*words)
+    assert cam("cyan1/image", *words, "--save", all_of_it).endswith("all: 2 pictures\n")
+    saved = [np.asarray(cv2.imread(str(file)), np.uint8) for file in all_of_it.iterdir()]
+    assert [np.array_equal(each, NOISE) for each in saved] == [True, True]
+
+
 def test_raw_bytes_are_those_of_the_frame(log: Path) -> None:
     cam("cyan2/front", "--log", log, "--save", log.parent / "one.bin", "--raw")
     assert (log.parent / "one.bin").read_bytes() == (NOISE // 3).tobytes()
