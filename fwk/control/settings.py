@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from itertools import accumulate
-from typing import Any, Literal, get_args, get_origin, get_type_hints
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 
 from fwk.component.config import Config
 from fwk.component.declaration import declaration
@@ -235,14 +237,23 @@ def _described(kind: type[Config], dotted: str) -> dict[str, Any]:
     for key in dotted.split("."):
         annotation, meaning, limits, fixed = _field(annotation, key)
         editable = editable and not fixed
+    meaning = " ".join(meaning.split())
     return {"type": _type_name(annotation), "range": limits, "meaning": meaning, "editable": editable}
 
 
 def _type_name(annotation: Any) -> str:
-    if get_origin(annotation) is Literal:
-        return " | ".join(map(str, get_args(annotation)))
-    name = annotation.__name__ if type(annotation) is type else str(annotation or "any")
-    return name.replace("typing.", "")
+    """Returns a type as launch files have it, without checks and defaults: `tuple[int, int] | None`."""
+    kind, parts = get_origin(annotation), get_args(annotation)
+    if kind is Literal:
+        return " | ".join(map(str, parts))
+    if kind is Annotated:
+        return _type_name(parts[0])
+    if kind in (Union, UnionType):
+        return " | ".join(map(_type_name, parts))
+    if annotation in (None, NoneType, ...):
+        return {None: "any", NoneType: "None"}.get(annotation, "...")
+    name = getattr(kind or annotation, "__name__", str(annotation))
+    return f"{name}[{', '.join(map(_type_name, parts))}]" if parts else name
 
 
 def _field(kind: Any, key: str) -> tuple[Any, str, str, bool]:
@@ -250,10 +261,22 @@ def _field(kind: Any, key: str) -> tuple[Any, str, str, bool]:
     if isinstance(kind, type) and issubclass(kind, BaseModel) and key in kind.model_fields:
         found = kind.model_fields[key]
         meaning = found.description or meanings_of(kind).get(key, "")
-        return found.annotation, meaning, _range(found.metadata), bool(found.frozen)
+        limits = _range([*found.metadata, *_limits_in(found.annotation)])
+        return found.annotation, meaning, limits, bool(found.frozen)
     if isinstance(kind, type) and dataclasses.is_dataclass(kind):
         return get_type_hints(kind).get(key), meanings_of(kind).get(key, ""), "", False
     return None, "", "", False
+
+
+def _limits_in(annotation: Any) -> Iterator[Any]:
+    """Yields the limits that an optional type states itself, as `Annotated[float, Field(ge=0.0)] | None` does."""
+    parts = get_args(annotation)
+    if get_origin(annotation) is Annotated:
+        for each in parts[1:]:
+            yield from each.metadata if isinstance(each, FieldInfo) else (each,)
+    elif get_origin(annotation) in (Union, UnionType):
+        for part in parts:
+            yield from _limits_in(part)
 
 
 def _range(limits: Iterable[Any]) -> str:

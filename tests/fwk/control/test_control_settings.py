@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from typing import Annotated, Literal
 
 import pytest
 from pydantic import Field, ValidationInfo, field_validator
@@ -115,6 +116,33 @@ def test_a_row_has_all_columns(settings: RunSettings) -> None:
     (deep,) = settings.rows(["b/turner.inner"])
     assert (deep["setting"], deep["type"], deep["meaning"]) == ("inner.deep", "int", "Depth.")
     assert deep["range"] == "at least 0, less than 10"
+
+
+class TypesConfig(Config):
+    share: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
+    """Meaning of two
+    lines."""
+    pair: tuple[Annotated[int, Field(le=255)], ...] = ()
+    wheels: dict[str, tuple[Literal[1, 2], ...]] = {}
+    inner: list[Inner] = []
+
+
+class Types(Component):
+    stage = "think"
+    config: TypesConfig
+
+
+def test_types_and_meanings_are_told_in_plain_words() -> None:
+    plan = plan_of({"a/types": Types})
+    plan.components[0].origins.update(dict.fromkeys(TypesConfig.model_fields, "default"))
+    rows = {row["setting"]: row for row in RunSettings(plan).rows(["a/types"])}
+    assert {name: row["type"] for name, row in rows.items()} == {
+        "share": "float | None",
+        "pair": "tuple[int, ...]",
+        "wheels": "dict[str, tuple[1 | 2, ...]]",
+        "inner": "list[Inner]",
+    }
+    assert (rows["share"]["range"], rows["share"]["meaning"]) == ("at least 0.0, at most 1.0", "Meaning of two lines.")
 
 
 def test_new_values_show_their_origin_once_in_force(settings: RunSettings) -> None:
