@@ -98,6 +98,12 @@ def path_of(row: dict[str, Any]) -> str:
     return f"{row['component']}.{row['setting']}"
 
 
+def choices_of(row: dict[str, Any]) -> list[str]:
+    """Returns the words of which a setting takes one; none if its value is typed, as a `str | int` is."""
+    words: list[str] = row["type"].split(" | ")
+    return words if row["value"] in words else []
+
+
 def _setting(frame: Frame, row: dict[str, Any], saves: Callable[[], bool]) -> None:
     """Makes the field of a setting with its type, origin and meaning; keeps a change for later runs if `saves()`."""
     access = frame.access
@@ -107,8 +113,8 @@ def _setting(frame: Frame, row: dict[str, Any], saves: Callable[[], bool]) -> No
         field: Any
         if row["type"] == "bool":
             field = ui.checkbox(path, value=bool(row["value"]))
-        elif " | " in row["type"] and isinstance(row["value"], str):
-            field = ui.select(row["type"].split(" | "), value=row["value"], label=path).props("dense outlined")
+        elif words := choices_of(row):
+            field = ui.select(words, value=row["value"], label=path).props("dense outlined")
         else:
             field = ui.input(path, value=_typed(row["value"])).props("dense outlined")
         field.classes("w-full").props["data-name"] = path

@@ -7,7 +7,7 @@ import pytest
 
 from fwk.lcm.messages import of_dict
 from fwk.web.pages.log import FilterMistakeError, filter_of
-from fwk.web.pages.settings import matches, tree_of
+from fwk.web.pages.settings import choices_of, matches, tree_of
 from fwk.web.rates import Rates
 from fwk.web.sending import FieldError, examples_of, fields_of, value_of
 from fwk.web.words import age, rows_of, seconds, size
@@ -140,3 +140,16 @@ def test_figures_are_written_for_people() -> None:
         ("of[0].a", "1"),
         ("text", "<b>"),
     ]
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "words"),
+    [
+        ("none | harsh", "harsh", ["none", "harsh"]),
+        ("str | int", "pictures", []),
+        ("float | None", None, []),
+        ("list[str]", ["a"], []),
+    ],
+)
+def test_only_a_word_among_others_is_chosen(kind: str, value: Any, words: list[str]) -> None:
+    assert choices_of({"type": kind, "value": value}) == words
