@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import ground_truth_t, match_event_t
 from procs.behaviour.roles import GOALKEEPER
 from procs.evaluation.beliefs import Samples
@@ -112,9 +111,9 @@ def _taken(piece: Piece) -> list[bool]:
 def _role_changes(piece: Piece) -> tuple[int, float]:
     """Returns how often robots took another role in play, and the minutes that they played, all together."""
     changes, ticks = 0, 0
-    for roles in piece.by_robot.get("role", {}).values():
+    for robot in piece.by_robot.get("role", {}):
         for tick in piece.game:
-            both = roles.get(tick - 1), roles.get(tick)
+            both = piece.newest("role", robot, tick - 1), piece.newest("role", robot, tick)
             running = piece.game[tick].state == State.PLAY and not piece.game[tick].stopped
             if running and both[0] and both[1] and GOALKEEPER not in (both[0].role, both[1].role):
                 ticks += 1
@@ -128,12 +127,11 @@ def _passes(piece: Piece) -> list[bool]:
     A pass of which the piece does not show the end is left out, as is one that a foul elsewhere interrupts.
     """
     controlled = []
-    skills, kickers = piece.by_robot.get("skill_status", {}), piece.by_robot.get("kicker_state", {})
     for tick, events in piece.events.items():
         for event in events:
-            running = skills.get(event.robot, {}).get(tick - 1)
+            running = piece.newest("skill_status", event.robot, tick - 1)
             if event.kind == match_event_t.KICK and running and running.skill == "pass":
-                outcome = _is_controlled(piece, tick, event.robot, kickers)
+                outcome = _is_controlled(piece, tick, event.robot)
                 if outcome is not None:
                     controlled.append(outcome)
     return controlled
@@ -144,9 +142,7 @@ def _left(piece: Piece, *ticks: int) -> bool:
     return any(event.kind in LEAVES for tick in ticks for event in piece.events.get(tick, ()))
 
 
-def _is_controlled(
-    piece: Piece, kicked: int, passer: str, kickers: dict[str, dict[int, kicker_state_t]]
-) -> bool | None:
+def _is_controlled(piece: Piece, kicked: int, passer: str) -> bool | None:
     """Returns whether a mate controls a pass; none does if a rival or no robot touches it, or if it leaves the field.
 
     None if the piece ends before that is known, or the referee stops the game for another reason.
@@ -161,7 +157,7 @@ def _is_controlled(
         if any(piece.team(robot) != piece.team(passer) for robot in touching):
             return False
         for robot in sorted(touching):
-            state = kickers.get(robot, {}).get(tick)
+            state = piece.newest("kicker_state", robot, tick)
             held[robot] = held.get(robot, 0) + 1 if state and state.ball_held else 0
             if held[robot] * piece.period_s >= _CONTROL_S:
                 return True

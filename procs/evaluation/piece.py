@@ -43,6 +43,8 @@ BELIEFS: dict[str, Any] = {
     "average_ball": world_model_t,
 }
 """Interfaces of each robot that a piece keeps."""
+SILENT_S = 0.5
+"""What a component said so long before is not what it says now; one with `every` says nothing in the ticks between."""
 
 
 @dataclass
@@ -94,6 +96,12 @@ class Piece:
     def rivals(self, tick: int, name: str) -> list[true_robot_t]:
         """Returns the robots of the other team."""
         return [robot for robot in self.truth[tick].robots if team_in(robot) != self.team(name)]
+
+    def newest(self, interface: str, robot: str, tick: int) -> Any:
+        """Returns what a robot said last in an interface, in a tick or shortly before; None if it said nothing."""
+        told = self.by_robot.get(interface, {}).get(robot, {})
+        ticks = range(tick, tick - math.floor(SILENT_S / self.period_s + 1e-9) - 1, -1)
+        return next((told[each] for each in ticks if each in told), None)
 
     def touched_by(self, tick: int, within_s: float) -> set[str]:
         """Returns the robots that touched the ball in a tick or up to `within_s` before."""

@@ -37,13 +37,12 @@ def _played(piece: Piece) -> list[int]:
 
 def _shots(piece: Piece) -> list[match_event_t]:
     """Returns the fast kicks of the skills that shoot."""
-    skills = piece.by_robot.get("skill_status", {})
     return [
         event
         for tick, events in piece.events.items()
         for event in events
         if event.kind == match_event_t.KICK and event.speed_m_s > _SHOT_M_S
-        for running in [skills.get(event.robot, {}).get(tick - 1)]
+        for running in [piece.newest("skill_status", event.robot, tick - 1)]
         if running and running.skill in _SHOOTING
     ]
 

@@ -101,6 +101,16 @@ def test_pass_is_controlled_once_a_mate_holds_the_ball(toucher: str, controlled:
     assert conducted(passed(toucher))["passes controlled by the receiver"].tolist() == [controlled]
 
 
+@pytest.mark.parametrize("every", [2, 5])
+def test_pass_counts_though_components_miss_ticks(every: int) -> None:
+    """A component with `every` says nothing in the ticks between its iterations."""
+    made = passed("cyan2")
+    told = made.by_robot["kicker_state"]["cyan2"]
+    made.by_robot["kicker_state"]["cyan2"] = {tick: said for tick, said in told.items() if tick % every == 0}
+    made.by_robot["skill_status"]["cyan1"] = {FIRST + 1 - every: made.by_robot["skill_status"]["cyan1"][FIRST]}
+    assert conducted(made)["passes controlled by the receiver"].tolist() == [True]
+
+
 def test_pass_whose_end_the_piece_does_not_show_does_not_count() -> None:
     assert conducted(passed("", ticks=40))["passes controlled by the receiver"].tolist() == []
 
@@ -157,9 +167,12 @@ def test_shots_are_fast_kicks_of_the_skills_that_shoot(skill: str, shots: int) -
     made = piece([robot("cyan1", 0.0, 0.0)])
     status = skill_status_t()
     status.skill = skill
-    made.by_robot["skill_status"] = {"cyan1": dict.fromkeys(made.truth, status)}
     made.events = {FIRST + at: [event(match_event_t.KICK, "cyan1", speed)] for at, speed in ((5, 10.0), (20, 3.0))}
-    assert possession(made)["shots"][0, 0] == shots
+    for every in (1, 3):
+        made.by_robot["skill_status"] = {"cyan1": dict.fromkeys(list(made.truth)[::every], status)}
+        assert possession(made)["shots"][0, 0] == shots
+    made.by_robot["skill_status"] = {"cyan1": {FIRST - 10: status}}
+    assert possession(made)["shots"][0, 0] == 0, "it has long been silent"
 
 
 @pytest.mark.parametrize(("cyan", "magenta", "won", "lost"), [(2, 1, 1.0, 0.0), (1, 1, 0.0, 0.0), (0, 1, 0.0, 1.0)])
@@ -206,3 +219,12 @@ def test_role_changes_count_in_play_and_without_goalkeepers() -> None:
     changes, minutes = conducted(made)["role changes of a field player"][0]
     assert changes == 2
     assert minutes == pytest.approx(4 * 0.05 / 60)
+
+
+def test_role_changes_count_though_agents_miss_ticks() -> None:
+    made = piece([robot("cyan2", 0.0, 0.0)], ticks=6, vx_m_s=0.0)
+    told = {FIRST: "attacker", FIRST + 2: "defender", FIRST + 4: "defender"}
+    made.by_robot["role"] = {"cyan2": {tick: role_t(role=role) for tick, role in told.items()}}
+    made.game = {tick: playing() for tick in made.truth}
+    changes, minutes = conducted(made)["role changes of a field player"][0]
+    assert (changes, minutes) == (1, pytest.approx(5 * 0.05 / 60))
