@@ -41,7 +41,8 @@ def main() -> int:
         )
     scenarios, wrong = {}, False
     for file in words.files or sorted(BOOK.glob("*.yaml")):
-        path = file if file.exists() else BOOK / f"{file.name.removesuffix('.yaml')}.yaml"
+        is_name = file.parent == Path() and not file.exists()
+        path = BOOK / f"{file.name.removesuffix('.yaml')}.yaml" if is_name else file
         try:
             scenario = read(path)
             scenarios[path] = scenario if words.seed is None else scenario.model_copy(update={"seed": words.seed})
@@ -57,7 +58,7 @@ def main() -> int:
 
 
 def _play_once(scenarios: Mapping[Path, Scenario]) -> int:
-    failed, wrong = 0, False
+    failed, wrong, names = 0, False, _names(list(scenarios))
     for path, scenario in scenarios.items():
         try:
             verdict = outcome(scenario)
@@ -69,7 +70,7 @@ def _play_once(scenarios: Mapping[Path, Scenario]) -> int:
             traceback.print_exc()
             verdict = Verdict(broken=[f"{type(error).__name__}: {error}"])
         failed += not verdict.ok
-        judged = f"ok     {path.stem}" if verdict.ok else f"failed {path.stem}, seed {scenario.seed}"
+        judged = f"ok     {names[path]}" if verdict.ok else f"failed {names[path]}, seed {scenario.seed}"
         print(
             f"{judged} ({verdict.time_s:.1f} s)",
             *verdict.broken,
@@ -84,8 +85,7 @@ def _play_often(paths: Sequence[Path], seeds: range) -> int:
     A scenario with a mistake that only the run shows is not counted.
     """
     runs = [(path, seed) for path in paths for seed in seeds]
-    stems = [path.stem for path in paths]
-    names = {path: path.stem if stems.count(path.stem) == 1 else str(path) for path in paths}
+    names = _names(paths)
     mistakes: dict[Path, str] = {}
     with executor_of(min(os.cpu_count() or 1, len(runs))) as executor:
         futures = {executor.submit(broken_in, path, seed): (path, seed) for path, seed in runs}
@@ -110,6 +110,12 @@ def _play_often(paths: Sequence[Path], seeds: range) -> int:
         for text in texts:
             print(f"{names[path]}, seed {seed}: {text}")
     return 2 if mistakes else int(any(broken.values()))
+
+
+def _names(paths: Sequence[Path]) -> dict[Path, str]:
+    """Returns the names of scenarios: those of their files, with folder and ending where several are called alike."""
+    stems = [path.stem for path in paths]
+    return {path: path.stem if stems.count(path.stem) == 1 else str(path) for path in paths}
 
 
 def _seeds(text: str) -> range:

@@ -32,6 +32,27 @@ def test_seeds_are_played_with_files_of_ones_own(
         assert command.main() == 0
 
 
+def test_files_of_one_name_are_told_apart_by_their_folders(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = [tmp_path / folder / "mine.yaml" for folder in ("one", "two")]
+    for file, sign in zip(files, "<>", strict=True):
+        file.parent.mkdir()
+        file.write_text(f"dummies: [cyan2]\nalways: [x(cyan2) {sign} 0]\ntime_s: 0.2\n")
+    monkeypatch.setattr("sys.argv", ["scenarios", *map(str, files)])
+    assert command.main() == 1
+    judged = [line for line in capsys.readouterr().out.splitlines() if line.startswith(("ok", "failed"))]
+    assert judged == [f"ok     {files[0]} (0.2 s)", f"failed {files[1]}, seed 1 (0.1 s)"]
+
+
+def test_file_in_a_folder_is_never_one_of_the_book(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["scenarios", str(tmp_path / "pass-reaches-the-mate.yaml")])
+    assert command.main() == 2
+    assert "there is no such scenario; did you mean 'pass-reaches-the-mate'?" in capsys.readouterr().err
+
+
 def test_mistake_that_a_run_shows_is_no_failure(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
