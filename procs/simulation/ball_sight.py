@@ -89,7 +89,7 @@ class BallSight:
             percept.x_m, percept.y_m = x_m, y_m
             *_, radius_px = self.mirror.sphere((x_m, y_m, self.radius_m), self.radius_m)
             deviation_px = self.stated_px + unsure_px(hidden_shift_px(confidence, radius_px), doubt)
-            percept.covariance_m2 = claimed(self.mirror, x_m, y_m, deviation_px, deviation_px)
+            percept.covariance_m2 = claimed(self.mirror, x_m, y_m, (deviation_px, deviation_px), self.radius_m)
         return percept
 
     def _blurred(self, at_m: Floats, moved_px: tuple[float, float], noise: list[float]) -> tuple[float, float]:
@@ -97,7 +97,7 @@ class BallSight:
         along, across = (
             np.array([px + self.errors.ball_px * drawn]) for px, drawn in zip(moved_px, noise[:2], strict=True)
         )
-        moved_m = blurred(self.mirror, at_m, along, across)
+        moved_m = blurred(self.mirror, at_m, along, across, self.radius_m)
         x_m, y_m = moved_m[0].tolist()
         return x_m, y_m
 

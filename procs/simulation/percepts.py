@@ -245,7 +245,7 @@ class Percepts(Component):
             obstacle = obstacle_t()
             obstacle.team = team
             obstacle.x_m, obstacle.y_m, obstacle.radius_m = x_m, y_m, config.robot.radius_m
-            obstacle.covariance_m2 = claimed(self._mirror, x_m, y_m, *self._stated.robot_px)
+            obstacle.covariance_m2 = claimed(self._mirror, x_m, y_m, self._stated.robot_px)
             percepts.obstacles.append(obstacle)
 
     def _see_lines(self, own: true_robot_t, robots_m: Floats, shake_px: tuple[float, float]) -> None:

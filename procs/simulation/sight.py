@@ -8,9 +8,10 @@ import numpy as np
 from procs.model.algebra import Floats
 from procs.model.rays import left_of, rays
 from procs.vision.mirror import Mirror
-from procs.vision.uncertainty import ground_covariance
+from procs.vision.uncertainty import plane_covariance
 
 _FARTHER_PX = 0.08  # by which robots seem farther away; fitted to rendered pictures
+_LEAST_PX = 0.02  # deviation that a percept states at least
 
 
 def hidden(points_m: Floats, bodies_m: Floats, radius_m: float) -> Floats:
@@ -81,12 +82,15 @@ def _disc_moment(x: float) -> float:
     return -2.0 / (3.0 * math.pi) * math.pow(1.0 - x * x, 1.5)
 
 
-def blurred(mirror: Mirror, points_m: Floats, along_px: Floats, across_px: Floats) -> Floats:
-    """Returns points (n, 2) on the ground moved by so many pixels (n) of the mirror's picture, along and across."""
+def blurred(mirror: Mirror, points_m: Floats, along_px: Floats, across_px: Floats, plane_m: float = 0.0) -> Floats:
+    """Returns points (n, 2) in a level plane moved by so many pixels (n) of the mirror's picture, along and across.
+
+    `plane_m` is the height of the plane.
+    """
     if not len(points_m):
         return points_m
     range_m, ahead = rays(points_m)
-    along_m, across_m = mirror.metres_per_px_each(range_m)
+    along_m, across_m = mirror.metres_per_px_each(range_m, plane_m)
     across = left_of(ahead)
     return np.asarray(points_m + ahead * (along_px * along_m)[:, None] + across * (across_px * across_m)[:, None])
 
@@ -143,10 +147,10 @@ def displaced(
     return along, across
 
 
-def claimed(mirror: Mirror, x_m: float, y_m: float, along_px: float, across_px: float) -> list[list[float]]:
-    """Returns the covariance (2, 2) in m² that a percept states; never quite zero."""
-    least_px = 0.02
-    covariance: list[list[float]] = ground_covariance(
-        mirror, x_m, y_m, math.hypot(along_px, least_px), math.hypot(across_px, least_px)
-    ).tolist()
+def claimed(
+    mirror: Mirror, x_m: float, y_m: float, deviations_px: tuple[float, float], plane_m: float = 0.0
+) -> list[list[float]]:
+    """Returns the covariance (2, 2) in m² that a percept states; never quite zero. See `plane_covariance`."""
+    along_px, across_px = (math.hypot(deviation_px, _LEAST_PX) for deviation_px in deviations_px)
+    covariance: list[list[float]] = plane_covariance(mirror, x_m, y_m, (along_px, across_px), plane_m).tolist()
     return covariance

@@ -15,7 +15,7 @@ from procs.model.ball import BALL
 from procs.vision.ball_blob import Blob, blob_in
 from procs.vision.colours import ColourRange, Picture, to_hsv
 from procs.vision.mirror import Mirror
-from procs.vision.uncertainty import ground_covariance, sphere_covariance
+from procs.vision.uncertainty import plane_covariance, sphere_covariance
 
 _STEP_PX = 2  # the first search looks at every second pixel of every second row
 _MARGIN_PX = 2  # around a blob of the first search, so that the full picture shows its rim
@@ -142,7 +142,8 @@ class BallFinder:
         if side and (place := self._locate(*self._beside(blob, side * shift_px))) is not None:
             x_m, y_m, _ = place
         deviation_px = self.deviation_px + unsure_px(shift_px, doubt)
-        return BallSighting(x_m, y_m, 0.0, ground_covariance(self.mirror, x_m, y_m, deviation_px), confidence)
+        covariance_m2 = plane_covariance(self.mirror, x_m, y_m, (deviation_px, deviation_px), self.radius_m)
+        return BallSighting(x_m, y_m, 0.0, covariance_m2, confidence)
 
     def _hidden_side(self, blob: Blob, shift_px: float, radius_px: float) -> tuple[int, float]:
         """Returns the side on which something upright hides a part of a ball, and the doubt about it, 0..1.

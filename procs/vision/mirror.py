@@ -114,17 +114,22 @@ class Mirror:
         level = self.view_angle_rad >= math.pi / 2
         return math.inf if level else (self.height_m - plane_m) * math.tan(self.view_angle_rad)
 
-    def metres_per_px(self, distance_m: float) -> tuple[float, float]:
-        """Returns the ground in metres that one pixel covers at a distance: along the ray, and across it."""
-        reach_m = math.hypot(distance_m, self.height_m)
-        along_px_rad = self.scale_px / (1.0 + self.height_m / reach_m)  # of the angle from straight down
-        return reach_m**2 / self.height_m / along_px_rad, reach_m / along_px_rad
+    def metres_per_px(self, distance_m: float, plane_m: float = 0.0) -> tuple[float, float]:
+        """Returns the metres that one pixel covers at a distance in the level plane at height `plane_m`.
 
-    def metres_per_px_each(self, distances_m: Floats) -> tuple[Floats, Floats]:
+        They are those along the ray, and those across it.
+        """
+        below_m = self.height_m - plane_m
+        reach_m = math.hypot(distance_m, below_m)
+        along_px_rad = self.scale_px / (1.0 + below_m / reach_m)  # of the angle from straight down
+        return reach_m**2 / below_m / along_px_rad, reach_m / along_px_rad
+
+    def metres_per_px_each(self, distances_m: Floats, plane_m: float = 0.0) -> tuple[Floats, Floats]:
         """Returns `metres_per_px` of many distances (n): along the rays (n) and across them (n)."""
-        reach_m = np.hypot(distances_m, self.height_m)
-        across_m = reach_m * (1.0 + self.height_m / reach_m) / self.scale_px
-        return across_m * reach_m / self.height_m, across_m
+        below_m = self.height_m - plane_m
+        reach_m = np.hypot(distances_m, below_m)
+        across_m = reach_m * (1.0 + below_m / reach_m) / self.scale_px
+        return across_m * reach_m / below_m, across_m
 
     def _pixels(self, offsets: Floats) -> Floats:
         return self.centre_px - self.scale_px * offsets[:, ::-1]

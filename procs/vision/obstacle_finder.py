@@ -14,7 +14,7 @@ from procs.vision.colours import ColourRange, Picture
 from procs.vision.feet import Feet, feet_in
 from procs.vision.mirror import Mirror
 from procs.vision.scan import Scan
-from procs.vision.uncertainty import ground_covariance
+from procs.vision.uncertainty import plane_covariance
 
 _BETWEEN_RAYS = 0.23  # standard deviation of a middle across the ray, as a share of the distance between two rays
 _BESIDE_RAYS = 2  # rays from one body to the next if nothing is between them
@@ -170,7 +170,7 @@ class ObstacleFinder:
         px_rad = self.mirror.radius_px(abs(away_m))
         across_px = max(across_px, _BETWEEN_RAYS * step_rad * px_rad)  # pixels do not help where rays are further apart
         across_px = math.hypot(across_px, _LOST * lost_rad * px_rad)
-        return Obstacle(x_m, y_m, ground_covariance(self.mirror, x_m, y_m, along_px, across_px))
+        return Obstacle(x_m, y_m, plane_covariance(self.mirror, x_m, y_m, (along_px, across_px)))
 
     def _away_m(self, edges_m: Floats, middle_rad: float) -> float:
         """Returns the distance of a robot whose middle is in a direction."""

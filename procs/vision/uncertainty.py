@@ -8,16 +8,16 @@ from procs.model.algebra import Floats
 from procs.vision.mirror import Mirror
 
 
-def ground_covariance(
-    mirror: Mirror, x_m: float, y_m: float, along_px: float, across_px: float | None = None
+def plane_covariance(
+    mirror: Mirror, x_m: float, y_m: float, deviations_px: tuple[float, float], plane_m: float = 0.0
 ) -> Floats:
-    """Returns the covariance (2 x 2, robot frame, m²) of a point on the ground.
+    """Returns the covariance (2 x 2, robot frame, m²) of a point in the level plane at height `plane_m`.
 
-    `along_px` and `across_px` are its standard deviations in the picture, along and across the ray from the picture's
-    centre; without `across_px` both are equal.
+    `deviations_px` are its standard deviations in the picture, along and across the ray from the picture's centre.
     """
-    along_m, across_m = mirror.metres_per_px(math.hypot(x_m, y_m))
-    return _along_ray(x_m, y_m, along_px * along_m, (along_px if across_px is None else across_px) * across_m)
+    along_px, across_px = deviations_px
+    along_m, across_m = mirror.metres_per_px(math.hypot(x_m, y_m), plane_m)
+    return _along_ray(x_m, y_m, along_px * along_m, across_px * across_m)
 
 
 def sphere_covariance(

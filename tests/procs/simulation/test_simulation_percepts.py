@@ -21,7 +21,7 @@ from procs.vision.omni_ball import OmniBall
 from procs.vision.omni_field import OmniField
 
 OWN = (-3.0, 1.5, 0.7)
-FRAMES = 80
+FRAMES = 320
 AWAY_M = (1.5, 3.0, 4.5)
 
 

@@ -85,6 +85,17 @@ def test_covariance_matches_the_errors_of_a_shaking_mirror(distance_m: float) ->
     assert 1.0 < normed.mean() < 3.5  # two degrees of freedom: 2 if the covariance were exact
 
 
+@pytest.mark.parametrize("radius_m", [0.11, 0.25])
+def test_pixels_count_in_the_plane_of_the_balls_middle(radius_m: float) -> None:
+    scene = Scene(Pose(0.5, 0.5, 0.0), [], (3.5, 0.5, radius_m))
+    frame = Renderer(MIRROR, Field(), Bodies(ball_radius_m=radius_m)).render(scene)
+    ball = BallFinder(MIRROR, FINDER.colour, radius_m, deviation_px=0.5).find(frame)
+    assert ball is not None
+    middle_px = MIRROR.project(np.array([(ball.x_m, ball.y_m, radius_m)]))
+    nearer_m, further_m = MIRROR.ground(middle_px + np.array([(0.0, 0.5), (0.0, -0.5)]), radius_m)[:, 0]
+    assert math.sqrt(ball.covariance_m2[0, 0]) == pytest.approx((further_m - nearer_m) / 2, rel=0.03)
+
+
 def test_error_grows_with_distance_as_cambada_assumes_at_most() -> None:
     """CAMBADA's filter uses 0.01 d² - 0.01 d + 0.039 m as the standard deviation of a single sighting."""
     deviations = [math.sqrt((sightings(d, SHAKE_PX)[0] ** 2).sum(axis=1).mean()) for d in (1.0, 2.0, 4.0, 6.0)]
