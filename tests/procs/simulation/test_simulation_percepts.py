@@ -22,6 +22,7 @@ from procs.vision.omni_field import OmniField
 
 OWN = (-3.0, 1.5, 0.7)
 FRAMES = 320
+FLYING_FRAMES = 240
 AWAY_M = (1.5, 3.0, 4.5)
 
 
@@ -297,7 +298,7 @@ def test_errors_in_the_air_are_those_of_pictures(away_m: float, height_m: float)
     def errors(rendered: bool) -> tuple[float, float]:
         across, up = [], []
         system = seen_through(rendered, Flying, away_m=away_m, height_m=height_m)
-        system.tick(3 * FRAMES)
+        system.tick(FLYING_FRAMES)
         percepts = [ball_percept_t.decode(each) for each in system.sent["cyan1/ball_percept"]]
         flying: Any = system.runners["world/scene"].component
         for percept, shown in zip(percepts, flying.shown, strict=True):
