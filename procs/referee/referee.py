@@ -80,7 +80,7 @@ class Referee(Component):
             for call in whistle.calls:
                 self._record(call)
             self._tell_awaited(sight)
-        self._write_history(due=self.clock.tick % _REPEATED_TICKS == 1)
+        self._write_history(due=(self.clock.tick - 1) % _REPEATED_TICKS < self.clock.every)
         self._write_state()
         self._obey(sight)
         if whistle.placements != self._placed:

@@ -186,6 +186,13 @@ def test_history_is_written_at_first_and_when_it_grows() -> None:
     assert len(bench.port("match_history").sent) == 3, "repeated for readers outside that come late"
 
 
+@pytest.mark.parametrize("turns", [(2, 0), (3, 2)])
+def test_history_is_repeated_though_the_referee_misses_ticks(turns: tuple[int, int]) -> None:
+    bench = Bench(Referee, "world/referee", every=turns[0], offset=turns[1])
+    bench.iterate(300)
+    assert len(bench.port("match_history").sent) == 3
+
+
 def test_history_that_begins_anew_is_written() -> None:
     bench = Bench(Referee, "world/referee")
     bench.iterate(3)
