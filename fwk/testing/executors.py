@@ -218,7 +218,10 @@ def executor_of(jobs: int, cluster: str = "", limit_s: float | None = None) -> I
         client = dask.Client(cluster, timeout=CONNECT_S)
     except (TimeoutError, MemoryError) as error:  # MemoryError: HTTP, read as the number of bytes to come
         raise CampaignError(f"no Dask scheduler at {cluster}: another program answers, such as a dashboard") from error
-    except (OSError, ValueError, TypeError) as error:  # TypeError: tls:// without certificates
+    except ValueError as error:  # about a part of the address, such as '8786/'
+        right = "write its address, such as tcp://192.168.1.5:8786"
+        raise CampaignError(f"no Dask scheduler at {cluster}: {error}; {right}") from error
+    except (OSError, TypeError) as error:  # TypeError: tls:// without certificates
         raise CampaignError(f"no Dask scheduler at {cluster}: {error}") from error
     with client:
         try:

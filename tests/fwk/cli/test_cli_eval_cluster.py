@@ -167,6 +167,13 @@ def test_address_without_a_scheduler_is_named(launch: Path, monkeypatch: pytest.
     assert (code, "no Dask scheduler at tcp://127.0.0.1:9" in said) == (1, True)
 
 
+@pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1", "tcp://127.0.0.1:9/"])
+def test_text_that_is_no_address_is_told_what_one_is(launch: Path, address: str) -> None:
+    code, _, said = evaluated(str(launch), "--seeds", "1", "--cluster", address)
+    assert (code, f"no Dask scheduler at {address}: " in said) == (1, True)
+    assert said.endswith("; write its address, such as tcp://192.168.1.5:8786\n")
+
+
 def greet(server: socket.socket, greeting: bytes) -> None:
     """Greets a caller, and hears it until it leaves."""
     caller, _ = server.accept()
