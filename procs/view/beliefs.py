@@ -9,14 +9,17 @@ from procs.view.canvas import Canvas
 from procs.view.palette import TEAM_COLOURS, UNKNOWN_TEAM
 
 _SIGMAS, _LIMIT_M = 2.0, 3.0  # half axes of an ellipse in standard deviations, and their longest
-_RING_M, _LINE_M = 0.28, 0.02  # radius of the ring at the believed pose, and width of its line
+_RING_M, _LINE_M = 0.03, 0.02  # distance of the ring at the believed pose from the body of a robot there, and its width
 
 
-def draw_beliefs(canvas: Canvas, team: str, belief: world_model_t) -> None:
-    """Draws, in the colour of a team, a ring at the believed pose and an ellipse of two deviations around the ball."""
+def draw_beliefs(canvas: Canvas, team: str, belief: world_model_t, radius_m: float) -> None:
+    """Draws, in the colour of a team, a ring at the believed pose and an ellipse of two deviations around the ball.
+
+    `radius_m` is that of a robot.
+    """
     colour = TEAM_COLOURS.get(team, UNKNOWN_TEAM)
     if belief.localized:
-        canvas.ring((belief.x_m, belief.y_m), _RING_M, _LINE_M, colour)
+        canvas.ring((belief.x_m, belief.y_m), radius_m + _RING_M, _LINE_M, colour)
     covariance = np.array(belief.ball.covariance)[:2, :2]
     if belief.ball.known and np.isfinite(covariance).all():
         variances, axes = np.linalg.eigh((covariance + covariance.T) / 2)

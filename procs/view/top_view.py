@@ -69,7 +69,7 @@ class TopView:
         canvas = self._canvas.on(self._canvas.picture.copy())
         teams = {robot.name: team_in(robot) for robot in truth.robots}
         for name, belief in sorted((beliefs or {}).items()):
-            draw_beliefs(canvas, teams.get(name, ""), belief)
+            draw_beliefs(canvas, teams.get(name, ""), belief, self._radius_m)
         for robot in truth.robots:
             if plausible(robot.x_m, robot.y_m, robot.heading_rad):
                 self._draw_robot(canvas, robot)

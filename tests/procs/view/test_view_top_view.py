@@ -6,6 +6,7 @@ import pytest
 from fwk.web import Newest
 from lcmtypes.soccer import game_state_t, ground_truth_t, true_robot_t, world_model_t
 from procs.model.field import Field
+from procs.model.robot import ROBOT
 from procs.simulation.physics.reports import field_message
 from procs.view.ground import GRASS, WHITE, arc_places
 from procs.view.palette import TEAM_COLOURS
@@ -87,6 +88,14 @@ def test_estimates_are_drawn_where_the_robot_sees_the_ball() -> None:
     assert np.ptp(columns) / PX_PER_M == pytest.approx(2.0, abs=0.1)
     assert np.ptp(rows) / PX_PER_M == pytest.approx(0.4, abs=0.1)
     assert columns.mean() / PX_PER_M - 12.0 == pytest.approx(-6.0, abs=0.05)
+
+
+@pytest.mark.parametrize("radius_m", [0.2, 0.35])
+def test_ring_of_a_right_belief_lies_around_the_robot(radius_m: float) -> None:
+    view, still = TopView(960, robot=ROBOT.model_copy(update={"radius_m": radius_m})), truth(("cyan1", 0.0, 0.0, 0.0))
+    belief = world_model_t(localized=True)
+    rows, columns = np.nonzero((view.draw(still) != view.draw(still, beliefs={"cyan1": belief})).any(axis=2))
+    assert np.ptp(columns) / PX_PER_M == np.ptp(rows) / PX_PER_M == pytest.approx(2 * (radius_m + 0.03), abs=0.06)
 
 
 def test_extreme_values_are_drawn_or_left_out_but_never_fatal() -> None:
