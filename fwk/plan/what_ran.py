@@ -39,7 +39,7 @@ def imported_modules(component_modules: Iterable[str], folders: Sequence[str]) -
             continue
         if top in packages or (prefixes and file.startswith(prefixes) and "site-packages" not in file):
             found[name] = file
-    return {name: ModulePlan(file, _hash_of(file)) for name, file in sorted(found.items())}
+    return {name: ModulePlan(file, hash_of(file)) for name, file in sorted(found.items())}
 
 
 def changed_modules(plan: Plan) -> dict[str, str]:
@@ -52,7 +52,7 @@ def changed_modules(plan: Plan) -> dict[str, str]:
         file = _file_of(name)
         if not file:
             changed[name] = f"{before.file} is missing"
-        elif _hash_of(file) != before.sha256:
+        elif hash_of(file) != before.sha256:
             changed[name] = f"{file} was changed" if file == before.file else f"{before.file} ran; here it is {file}"
     return changed
 
@@ -60,7 +60,7 @@ def changed_modules(plan: Plan) -> dict[str, str]:
 def hash_of_module(name: str) -> str:
     """Returns the hash of a module's file here; empty if there is no such module."""
     file = _file_of(name)
-    return _hash_of(file) if file else ""
+    return hash_of(file) if file else ""
 
 
 def different_modules(plans: tuple[Plan, Plan]) -> list[str]:
@@ -112,7 +112,8 @@ def _file_of(module: str) -> str:
     return spec.origin or "" if spec else ""
 
 
-def _hash_of(file: str) -> str:
+def hash_of(file: str) -> str:
+    """Returns the beginning of the hash of a file's content; empty if there is no such file."""
     try:
         found = os.stat(file)
         if wall_us() - max(found.st_mtime_ns, found.st_ctime_ns) // 1000 > _SETTLED_US:

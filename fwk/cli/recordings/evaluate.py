@@ -17,12 +17,14 @@ import typer
 from fwk.cli.arguments import seconds
 from fwk.cli.plan_options import Sets
 from fwk.cli.recordings.user_folders import use_folders
+from fwk.component.child_process import find_words
+from fwk.component.program import MODULE
 from fwk.model.errors import PlanError
 from fwk.model.plan import Plan
 from fwk.plan.classes import find_object
 from fwk.plan.files.launch_file import FOLDER, INSTALLED
 from fwk.plan.load import LaunchOptions, load_plan
-from fwk.plan.what_ran import imported_modules
+from fwk.plan.what_ran import hash_of, imported_modules
 from fwk.program import BAD_INPUT, FAILED
 from fwk.testing.campaign import Campaign, listed
 from fwk.testing.differing import digest_of, digests_of
@@ -98,7 +100,7 @@ def eval(  # noqa: A001 - the name of the command
     about = {"file": os.path.normpath(plan.file), "time_s": time_s, "by": plan.evaluation, **digests}
     work = Evaluation(plan.evaluation, plan.folders, tuple(sets or ()), modules if cluster else {}, digests["plan"])
     try:
-        code = digest_of(sorted((modules | _inputs(plan)).items()))
+        code = digest_of(sorted((modules | _programs(plan) | _inputs(plan)).items()))
         with _refused_by(folder):
             campaign = Campaign(folder, about | ({"sets": sets} if sets else {}), code, _flaw_in(plan))
             former = campaign.of_other_code(numbers)
@@ -215,6 +217,13 @@ def _modules(plan: Plan) -> dict[str, str]:
     with suppress(ImportError):  # the runs say so
         import_module(plan.evaluation.partition(":")[0])
     return {name: module.sha256 for name, module in imported_modules(used, plan.folders).items()}
+
+
+def _programs(plan: Plan) -> dict[str, str]:
+    """Returns the hashes of the files that the commands of the plan's components name, such as `./adder.py`."""
+    words = {word for each in plan.components if each.module == MODULE for word in each.config["command"]}
+    files = {word: find_words([word], plan.folders)[0] for word in sorted(words) if "/" in word}
+    return {word: hash_of(file) for word, file in files.items()}
 
 
 def _inputs(plan: Plan) -> dict[str, str]:

@@ -371,27 +371,3 @@ def test_two_evaluations_do_not_share_a_folder(launch: Path) -> None:
         assert (code, table) == (1, "")
         assert "error: another evaluation is playing into eval-it; wait until it has ended, or" in said
     assert evaluated(str(launch), "--seeds", "1", "--jobs", "1")[0] == 0
-
-
-def test_results_of_changed_input_files_are_named(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = launch.with_name("scene.yaml")
-    scene.write_text("ball: 1")
-    monkeypatch.setattr(cli_eval_parts, "INPUTS", [scene], raising=False)
-    words = (str(launch), "--jobs", "1", "--seeds", "1")
-    assert "former code" not in evaluated(*words)[2]
-    assert "former code" not in evaluated(*words)[2]
-    scene.write_text("ball: 2")
-    assert "note: the result of seed 1 is of former code;" in evaluated(*words)[2]
-
-
-def test_results_of_former_code_are_named(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    words = (str(launch), "--jobs", "1", "--seeds")
-    assert "former code" not in evaluated(*words, "1..2")[2]
-    monkeypatch.setattr(evaluate, "_modules", lambda plan: {"it": "changed"})
-    code, table, said = evaluated(*words, "1..3")
-    assert (code, table) == (0, "1 2 3\n")
-    cure = "remove their files from eval-it to play them again"
-    assert f"note: 2 results are of former code, those of seeds 1, 2; {cure}\n" in said
-    (launch.parent / "eval-it" / "seed-1.json").unlink()
-    assert f"note: the result of seed 2 is of former code; {cure}\n" in evaluated(*words, "1..3")[2]
-    assert "former code" not in evaluated(*words, "1")[2]
