@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -26,13 +27,15 @@ class _Belief(NamedTuple):
     """Belief of a robot about its pose in one tick, beside the truth."""
 
     tick: int
+    ticks: int
+    """Ticks since the belief before; more than one with `every`."""
     localized: bool
     error_m: float
     error_rad: float
     jump_m: float
-    """Change of the error in position, as a vector, since the tick before."""
+    """Change of the error in position, as a vector, since the belief before."""
     carried: bool
-    """The robot was set down elsewhere in this tick."""
+    """The robot was set down elsewhere since the belief before."""
     stands: bool
     """The robot neither drives nor turns."""
 
@@ -57,7 +60,7 @@ def pose_samples(piece: Piece, interface: str = "pose", prefix: str = "") -> dic
     standing: list[tuple[float, float]] = []
     known: list[bool] = []
     found_s: list[float] = []
-    wrongs = jumps = 0
+    wrongs = jumps = ticks = 0
     for robot in sorted(piece.by_robot.get(interface, {})):
         unaware = was_wrong = was_localized = False
         beliefs = list(_beliefs(piece, interface, robot))
@@ -67,6 +70,7 @@ def pose_samples(piece: Piece, interface: str = "pose", prefix: str = "") -> dic
             unaware = (unaware or belief.carried) and belief.wrong
             if not unaware:
                 known.append(belief.localized)
+                ticks += belief.ticks * belief.localized
                 wrongs += belief.wrong and not was_wrong
                 jumped = belief.jump_m > _JUMP_M and belief.localized and was_localized
                 jumps += jumped and not (belief.carried or returns)
@@ -83,8 +87,8 @@ def pose_samples(piece: Piece, interface: str = "pose", prefix: str = "") -> dic
         "pose, heading": all_errors[:, 1],
         "pose, robot stands, position": standing_errors[:, 0],
         "pose, robot stands, heading": standing_errors[:, 1],
-        "wrong pose believed": np.array([(wrongs, sum(known) * piece.period_s / 60 / 1000)]),
-        "pose jumps": np.array([(jumps, sum(known) * piece.period_s / 60)]),
+        "wrong pose believed": np.array([(wrongs, ticks * piece.period_s / 60 / 1000)]),
+        "pose jumps": np.array([(jumps, ticks * piece.period_s / 60)]),
         "kidnapped, found within 10 s": np.array([time_s <= FOUND_S for time_s in found_s], np.float64),
         "kidnapped, time until found": np.array(found_s),
     }
@@ -93,29 +97,36 @@ def pose_samples(piece: Piece, interface: str = "pose", prefix: str = "") -> dic
 
 def _beliefs(piece: Piece, interface: str, robot: str) -> Iterator[_Belief]:
     """Yields the beliefs of a robot in the order of the ticks."""
-    before: true_robot_t | None = None
+    before = 0  # tick of the belief before
     error_before = (0.0, 0.0)
     told: dict[int, pose_t] = piece.by_robot[interface][robot]
+    carried = _carried(piece, robot)
     for tick, pose in sorted(told.items()):
         if tick in piece.truth and tick * piece.period_s >= START_S:
-            own = piece.robot(tick, robot)
-            carried = before is not None and _is_carried(before, own, piece.period_s)
+            own, since = piece.robot(tick, robot), range((before or tick - 1) + 1, tick + 1)
             error, off_rad = (pose.x_m - own.x_m, pose.y_m - own.y_m), pose.heading_rad - own.heading_rad
             if plausible(*error, off_rad):
                 off_rad = abs(wrap_rad(off_rad))
             else:  # no pose at all: it is wrong, and shows
                 error, off_rad = (math.inf, math.inf), math.inf
-            jump_m = math.dist(error, error_before) if before is not None else 0.0
-            before, error_before = own, error
+            jump_m = math.dist(error, error_before) if before else 0.0
+            before, error_before = tick, error
             yield _Belief(
                 tick,
+                len(since),
                 bool(pose.localized),
                 math.hypot(*error),
                 off_rad,
                 jump_m,
-                carried,
+                not carried.isdisjoint(since),
                 math.hypot(own.vx_m_s, own.vy_m_s) <= _STANDS_M_S and abs(own.omega_rad_s) <= _STANDS_RAD_S,
             )
+
+
+def _carried(piece: Piece, robot: str) -> set[int]:
+    """Returns the ticks in which a robot was set down elsewhere."""
+    poses = [(tick, own) for tick, truth in sorted(piece.truth.items()) for own in truth.robots if own.name == robot]
+    return {tick for (_, before), (tick, own) in pairwise(poses) if _is_carried(before, own, piece.period_s)}
 
 
 def _is_carried(before: true_robot_t, robot: true_robot_t, period_s: float) -> bool:
@@ -133,8 +144,9 @@ def _found_s(beliefs: list[_Belief], period_s: float) -> list[float]:
     times_s = []
     for place, belief in enumerate(beliefs):
         if belief.carried:
-            rest = beliefs[place + 1 : place + 1 + round(FOUND_S / period_s)]
-            if len(rest) * period_s >= FOUND_S - period_s / 2 and not any(each.carried for each in rest):
+            until, last = belief.tick + round(FOUND_S / period_s), beliefs[-1]
+            rest = [each for each in beliefs[place + 1 :] if each.tick <= until]
+            if last.tick + last.ticks > until and not any(each.carried for each in rest):
                 found = next((each.tick for each in rest if each.right), math.inf)
                 times_s.append((found - belief.tick) * period_s)
     return times_s

@@ -45,6 +45,21 @@ def test_carried_robot_is_found_once_its_pose_is_right() -> None:
     assert found["pose known"].sum() == 10 + 190
 
 
+@pytest.mark.parametrize("every", [1, 2, 5])
+def test_poses_of_some_ticks_tell_the_same(every: int) -> None:
+    """A localization with `every` says nothing in the ticks between its iterations; the robot drives meanwhile."""
+    made = carried_piece(ticks=221)
+    for tick, truth in made.truth.items():
+        truth.robots = [robot(truth.robots[0].x_m + (tick - FIRST) * 0.05 * 3.0, 3.0)]
+    at = {tick: believes(truth.robots[0].x_m, not 10 <= tick - FIRST < 30) for tick, truth in made.truth.items()}
+    at[FIRST + 200].x_m += 2.0
+    made.by_robot["pose"] = {"cyan1": {tick: pose for tick, pose in at.items() if tick % every == 0}}
+    found = pose_samples(made)
+    assert found["kidnapped, time until found"].tolist() == pytest.approx([1.0])
+    assert found["wrong pose believed"][0] == pytest.approx([1, 0.05 * 201 / 60 / 1000], rel=0.03)
+    assert found["pose jumps"][0] == pytest.approx([2, 0.05 * 201 / 60], rel=0.03)
+
+
 def test_robot_that_is_turned_by_hand_was_carried() -> None:
     made = carried_piece()
     for tick, truth in made.truth.items():
