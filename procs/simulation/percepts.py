@@ -30,6 +30,7 @@ from procs.simulation.percept_errors import PRESETS
 from procs.simulation.rendering.ground_view import half_pixels
 from procs.simulation.sight import between_rays, blurred, claimed, displaced, glimpse_of, hidden
 from procs.vision.calibration import MirrorConfig, below_mirror
+from procs.vision.obstacle_finder import MOST_RAYS, across_rays_px, ray_count
 
 
 class PerceptsConfig(Config):
@@ -85,8 +86,8 @@ class PerceptsConfig(Config):
     """Geometry of all robots."""
     ball: BallModel = BALL
     """Size of the ball."""
-    rays: int = Setting(default=180, ge=60, le=720)
-    """Scan lines around the robot, as the detector of lines has them."""
+    rays: int = Setting(default=180, ge=60, le=MOST_RAYS)
+    """Scan lines around the robot, as the detector of lines has them; more for robots that are narrower than usual."""
     ring_distances_m: tuple[PositiveFloat, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
     """Radii of the rings, as the detector of lines has them."""
     reach_m: float = Setting(default=7.0, gt=0.5, le=20.0)
@@ -182,6 +183,7 @@ class Percepts(Component):
             self._stated.ball_px,
         )
         self._lines = line_scan(self.config.field)
+        self._rays = ray_count(self.config.rays, self.config.robot.radius_m)
 
     def _look(self, seen: Exposure, passed_s: float) -> None:
         """Draws all percepts of a frame, `passed_s` after the last one."""
@@ -228,7 +230,7 @@ class Percepts(Component):
         luck, noise = self.rng.random(len(robots_m)), self.rng.standard_normal(len(robots_m))
         phantom, direction, distance = self.rng.random(3)
         moved_px = self._moved(robots_m, shake_px)
-        moved_m = between_rays(self._mirror, robots_m, moved_px, noise, config.robot.radius_m, config.rays)
+        moved_m = between_rays(self._mirror, robots_m, moved_px, noise, config.robot.radius_m, self._rays)
         near = np.hypot(moved_m[:, 0], moved_m[:, 1]) <= self._robot_reach_m
         most_hidden = 1 - config.least_visible
         free = hidden(robots_m, robots_m, config.robot.radius_m) < most_hidden
@@ -241,11 +243,13 @@ class Percepts(Component):
             moved_m = np.vstack((moved_m, range_m * np.array((math.cos(angle_rad), math.sin(angle_rad)))))
             colours.append(obstacle_t.TEAM_UNKNOWN)
         percepts = self.obstacle_percepts.value = obstacle_percepts_t()
+        along_px, across_px = self._stated.robot_px
         for (x_m, y_m), team in zip(moved_m.tolist(), colours, strict=True):
             obstacle = obstacle_t()
             obstacle.team = team
             obstacle.x_m, obstacle.y_m, obstacle.radius_m = x_m, y_m, config.robot.radius_m
-            obstacle.covariance_m2 = claimed(self._mirror, x_m, y_m, self._stated.robot_px)
+            stated_px = along_px, across_rays_px(self._mirror, math.hypot(x_m, y_m), self._rays, across_px)
+            obstacle.covariance_m2 = claimed(self._mirror, x_m, y_m, stated_px)
             percepts.obstacles.append(obstacle)
 
     def _see_lines(self, own: true_robot_t, robots_m: Floats, shake_px: tuple[float, float]) -> None:
@@ -254,7 +258,7 @@ class Percepts(Component):
         found_m = self._lines.points(
             place,
             own.heading_rad,
-            config.rays,
+            self._rays,
             config.ring_distances_m,
             self._mirror.distance_m(self._line_reach_px + math.hypot(*shake_px)),
             self._mirror,

@@ -16,6 +16,7 @@ from procs.vision.mirror import Mirror
 from procs.vision.scan import Scan
 from procs.vision.uncertainty import plane_covariance
 
+MOST_RAYS = 720
 _BETWEEN_RAYS = 0.23  # standard deviation of a middle across the ray, as a share of the distance between two rays
 _BESIDE_RAYS = 2  # rays from one body to the next if nothing is between them
 _GAP = 1.4  # width of the gap that a ball in front of a robot makes at most, as a multiple of the robot's radius
@@ -25,6 +26,23 @@ _APART_WIDTH = 0.7  # ... if what is on either side is as wide as this share of 
 _OVERLAP_WIDTH = 1.15  # what is this wide for one robot is divided where one robot hides another
 _WHOLE = 0.3  # a robot counts as seen wholly if at most this share of half its width is missing
 _LOST = 0.2  # standard deviation of a middle across the ray, as a share of the hidden width
+
+
+def ray_count(rays: int, radius_m: float) -> int:
+    """Returns the number of rays that finds narrow robots as reliably as `rays` find robots of the usual width.
+
+    It grows with the cube of the ratio, because a ball in front of a narrow robot also hides a larger share of it.
+    """
+    narrower = max(1.0, ROBOT.radius_m / radius_m)
+    return min(MOST_RAYS, round(rays * narrower**3))
+
+
+def across_rays_px(mirror: Mirror, away_m: float, rays: int, deviation_px: float) -> float:
+    """Returns the standard deviation in the picture, across the ray, of a robot's middle that `rays` around find.
+
+    It is `deviation_px`, but more where the rays are further apart: there pixels do not help.
+    """
+    return max(deviation_px, _BETWEEN_RAYS * math.tau / rays * mirror.radius_px(away_m))
 
 
 @dataclass(frozen=True)
@@ -167,9 +185,8 @@ class ObstacleFinder:
         middle_rad += begin_rad
         x_m, y_m = away_m * math.cos(middle_rad), away_m * math.sin(middle_rad)
         along_px, across_px = self.deviation_px
-        px_rad = self.mirror.radius_px(abs(away_m))
-        across_px = max(across_px, _BETWEEN_RAYS * step_rad * px_rad)  # pixels do not help where rays are further apart
-        across_px = math.hypot(across_px, _LOST * lost_rad * px_rad)
+        across_px = across_rays_px(self.mirror, abs(away_m), len(self.star.ground_m), across_px)
+        across_px = math.hypot(across_px, _LOST * lost_rad * self.mirror.radius_px(abs(away_m)))
         return Obstacle(x_m, y_m, plane_covariance(self.mirror, x_m, y_m, (along_px, across_px)))
 
     def _away_m(self, edges_m: Floats, middle_rad: float) -> float:

@@ -14,11 +14,10 @@ from procs.vision.colours import ColourRange, Hsv, Picture, not_below, to_hsv
 from procs.vision.detector import Detector, DetectorConfig
 from procs.vision.line_finder import LineFinder
 from procs.vision.marker_finder import MarkerFinder
-from procs.vision.obstacle_finder import Obstacle, ObstacleFinder
+from procs.vision.obstacle_finder import MOST_RAYS, Obstacle, ObstacleFinder, ray_count
 from procs.vision.scan import Scan
 
 _BESIDE_BODY_M = 0.03  # distance from the robot's own body to the begin of the rays
-_MOST_RAYS = 720
 _WIDEST, _NARROWEST = 3.2, 0.4  # longest and shortest stretch of white on a line, as multiples of its width ...
 _BLURRED_M = 0.15  # ... and the longest one on a narrow line, which pixels blur
 
@@ -26,7 +25,7 @@ _BLURRED_M = 0.15  # ... and the longest one on a narrow line, which pixels blur
 class OmniFieldConfig(DetectorConfig):
     """Settings of the detector of lines and obstacles."""
 
-    rays: int = Setting(default=180, ge=60, le=_MOST_RAYS)
+    rays: int = Setting(default=180, ge=60, le=MOST_RAYS)
     """Number of rays around the robot. With fewer than 60, a robot 3 m away fits between two of them. More rays are
     used if the other robots are narrower than usual."""
     robot: RobotModel = ROBOT
@@ -148,18 +147,10 @@ def _begin_m(nearest_m: float | None, robot: RobotModel) -> float:
     return nearest_m or robot.radius_m + _BESIDE_BODY_M
 
 
-def _ray_count(config: OmniFieldConfig) -> int:
-    """Returns the number of rays that finds narrow robots as reliably as robots of the usual width.
-
-    It grows with the cube of the ratio, because a ball in front of a narrow robot also hides a larger share of it.
-    """
-    narrower = max(1.0, ROBOT.radius_m / config.robot.radius_m)
-    return min(_MOST_RAYS, round(config.rays * narrower**3))
-
-
 def _star(config: OmniFieldConfig) -> Scan:
     nearest_m = _begin_m(config.nearest_m, config.robot)
-    return Scan.star(config.mirror.mirror(), _ray_count(config), nearest_m, config.farthest_m)
+    rays = ray_count(config.rays, config.robot.radius_m)
+    return Scan.star(config.mirror.mirror(), rays, nearest_m, config.farthest_m)
 
 
 def _rings(config: OmniFieldConfig) -> Scan:
