@@ -107,7 +107,7 @@ EXAMPLES = {
     "fwk video": ("fwk video log.lcm --out run.mp4",),
     "fwk eval": (
         "fwk eval robots.yaml --seeds 1..20 --time 60",
-        "fwk eval robots.yaml --set '*/localization.particles=100' --out fewer-particles",
+        "fwk eval robots.yaml --set '*/localization.points=50' --out fewer-points",
         "fwk eval robots.yaml --seeds 1..100 --cluster tcp://192.168.1.5:8786",
     ),
     "fwk web": ("fwk web", "fwk web --run red --read-only", "fwk web --view yard_view --port 8000"),

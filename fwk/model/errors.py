@@ -9,7 +9,7 @@ _LISTED = 12
 
 @dataclass(frozen=True)
 class Problem:
-    """A mistake: `launch/robot.yaml:41: cyan1/omni_ball: no setting 'gian'; did you mean 'gain'?`."""
+    """A mistake: `launch/robot.yaml:41: cyan1/omni_ball: no setting 'least_ft'; did you mean 'least_fit'?`."""
 
     place: str
     """File and line, or the command-line option."""

@@ -74,7 +74,7 @@ def schema(
 
 @config.command()
 def get(
-    path: Annotated[str, typer.Argument(metavar="NAME.SETTING", help="such as cyan1/omni_ball.gain")],
+    path: Annotated[str, typer.Argument(metavar="NAME.SETTING", help="such as cyan1/omni_ball.least_fit")],
     file: LaunchFile = None,
     chosen: RunChoice = None,
     as_json: Json = False,
@@ -93,7 +93,7 @@ def get(
 @config.command("set")
 def set_settings(
     changes: Annotated[
-        list[str], typer.Argument(metavar="NAME.SETTING=VALUE...", help="such as cyan1/omni_ball.gain=0.5")
+        list[str], typer.Argument(metavar="NAME.SETTING=VALUE...", help="such as cyan1/omni_ball.least_fit=0.5")
     ],
     save: Annotated[
         bool, typer.Option("--save", help="also keep them in the host-specific file for later runs")
@@ -125,7 +125,7 @@ def set_settings(
 
 @config.command()
 def unset(
-    paths: Annotated[list[str], typer.Argument(metavar="NAME.SETTING...", help="such as cyan1/omni_ball.gain")],
+    paths: Annotated[list[str], typer.Argument(metavar="NAME.SETTING...", help="such as cyan1/omni_ball.least_fit")],
     chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:

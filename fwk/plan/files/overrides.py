@@ -9,14 +9,14 @@ from fwk.plan.files.source import Node, read_value
 PLACE = "--set"
 SHARED = "shared"
 """Section of a launch file whose settings go to every component that has them."""
-EXAMPLE = "write for example cyan1/omni_ball.gain=0.5"
+EXAMPLE = "write for example cyan1/omni_ball.least_fit=0.5"
 RUN_KEYS = ("period_s", "clock", "speed", "seed", "stage_time_s", "loop_time_s", "loop_time_warnings", "public_url")
 
 
 def overrides(sets: Sequence[str], problems: Problems) -> Node:
     """Returns the layer of all `--set` options, in the shape of a host file; later options win.
 
-    A path is `cyan1/omni_ball.gain`, `*/camera.gain`, `shared.realism`, or one of the run's own keys, `period_s`.
+    A path is `cyan1/omni_ball.least_fit`, `*/camera.blur_px`, `shared.realism`, or a key of the run, `period_s`.
     """
     made = Node({}, PLACE)
     for text in sets:

@@ -187,7 +187,7 @@ def test_a_restarted_process_gets_the_changes_to_the_plan(settings: RunSettings)
         (["a/turnr.gain=1"], "no component 'a/turnr'; did you mean 'a/turner'?"),
         (["c/plain.gain=1"], "c/plain: no setting 'gain'; there is log_level"),
         (["speed=2"], "'speed=2' is not NAME.SETTING=VALUE; values of the run as a whole cannot change"),
-        (["gain=2"], "'gain=2' is not NAME.SETTING=VALUE; write for example cyan1/omni_ball.gain=0.5"),
+        (["gain=2"], "'gain=2' is not NAME.SETTING=VALUE; write for example cyan1/omni_ball.least_fit=0.5"),
         (["turner.gain=2"], "no component 'turner'; did you mean 'a/turner'?"),
         (["b.turner.gain=2"], "'b' is not a component; did you mean 'b/turner'?"),
         (["shared.gain=2"], "'shared.gain=2' changes nothing; name the components that have it: NAME.SETTING=VALUE"),

@@ -252,7 +252,7 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
     ),
     Broken(
         """
-        --set: 'it/a.key' is not a PATH=VALUE; write for example cyan1/omni_ball.gain=0.5
+        --set: 'it/a.key' is not a PATH=VALUE; write for example cyan1/omni_ball.least_fit=0.5
         --set: no setting 'seeed'; did you mean 'seed'?
         --set: no setting 'it/a'; write NAME.SETTING=VALUE
         --set: '[1' is not a YAML value; write a number, true, false, text, [a, b] or {a: 1}
