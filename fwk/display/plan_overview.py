@@ -1,5 +1,7 @@
 """Describes a plan in a few lines."""
 
+import json
+
 from fwk.clock import US_PER_S
 from fwk.model.plan import Plan
 
@@ -14,7 +16,7 @@ def overview(plan: Plan) -> list[str]:
         f"{US_PER_S / plan.period_us:g} ticks/s",
     ]
     changed = [
-        f"{component.name}.{key} = {value_at(component.config, key)} ({origin})"
+        f"{component.name}.{key} = {as_typed(value_at(component.config, key))} ({origin})"
         for component in plan.components
         for key, origin in component.origins.items()
         if origin == "--set" or ".host.yaml:" in origin
@@ -27,6 +29,11 @@ def value_at(config: object, dotted: str) -> object:
     for key in dotted.split("."):
         config = config[key] if isinstance(config, dict) else None
     return config
+
+
+def as_typed(value: object) -> str:
+    """Returns a value as people type it in files and options: `null`, `true`, `[1, 2]`."""
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
 
 
 def counted(number: int, one: str, many: str = "") -> str:

@@ -10,7 +10,7 @@ from fwk.cli.output import say, say_table
 from fwk.cli.plan_options import ProcessHosting, Sets
 from fwk.cli.run_options import Json
 from fwk.clock import rate_word, turns_word
-from fwk.display.plan_overview import counted, overview, value_at
+from fwk.display.plan_overview import as_typed, counted, overview, value_at
 from fwk.display.table import Column, Table
 from fwk.model.errors import PlanError, Problem
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
@@ -95,5 +95,5 @@ def _settings_table(plan: Plan) -> Table:
     table = Table("setting", "value", Column("origin", rank=1))
     for component in plan.components:
         for key, origin in component.origins.items():
-            table.add(f"{component.name}.{key}", str(value_at(component.config, key)), origin)
+            table.add(f"{component.name}.{key}", as_typed(value_at(component.config, key)), origin)
     return table

@@ -7,6 +7,7 @@ from typing import Any
 from nicegui import ui
 
 from fwk.control.client import ControlError
+from fwk.display.plan_overview import as_typed
 from fwk.web.file_settings import differing, values_in_file
 from fwk.web.layout import Frame, body
 
@@ -116,7 +117,7 @@ def _setting(frame: Frame, row: dict[str, Any], saves: Callable[[], bool]) -> No
         elif words := choices_of(row):
             field = ui.select(words, value=row["value"], label=path).props("dense outlined")
         else:
-            field = ui.input(path, value=_typed(row["value"])).props("dense outlined")
+            field = ui.input(path, value=as_typed(row["value"])).props("dense outlined")
         field.classes("w-full").props["data-name"] = path
         field.set_enabled(live)
         details = ui.label(_details(row)).classes("text-caption opacity-70")
@@ -141,13 +142,8 @@ def _setting(frame: Frame, row: dict[str, Any], saves: Callable[[], bool]) -> No
         field.on_value_change(change)
 
 
-def _typed(value: Any) -> str:
-    """Returns a value as people type it."""
-    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
-
-
 def _details(row: dict[str, Any]) -> str:
-    in_file = f"in the launch file: {_typed(row['in_file'])}" if "in_file" in row else ""
+    in_file = f"in the launch file: {as_typed(row['in_file'])}" if "in_file" in row else ""
     fixed = "" if row["editable"] else "fixed for the run"
     parts = (in_file, row["type"], row["range"], row["origin"], fixed, row["meaning"])
     return ", ".join(filter(None, parts))

@@ -35,8 +35,10 @@ def test_a_good_file_is_summed_up(fwk: typer.Typer) -> None:
 def test_changes_by_host_file_and_options_are_shown(fwk: typer.Typer, folder: Path) -> None:
     (folder / "it.host.yaml").write_text("config: {a: {}}\n")
     (folder / "it.host.yaml").write_text("config: {a/wheels: {mode: hard}}\n")
-    result = CliRunner().invoke(fwk, ["it.yaml", "--set", "a/wheels.limits.speed_m_s=1"])
+    sets = ("--set", "a/wheels.limits.speed_m_s=1", "--set", "a/wheels.brake=false")
+    result = CliRunner().invoke(fwk, ["it.yaml", *sets])
     assert result.stdout.splitlines()[1:] == [
+        "a/wheels.brake = false (--set)",
         "a/wheels.mode = hard (it.host.yaml:1)",
         "a/wheels.limits.speed_m_s = 1.0 (--set)",
     ]
@@ -58,6 +60,7 @@ def test_the_settings_are_listed_with_their_origins(fwk: typer.Typer) -> None:
     lines = CliRunner().invoke(fwk, ["it.yaml", "--settings"]).stdout.splitlines()[2:]
     assert lines[0].split() == ["a/wheels.gain", "0.25", "it.yaml:3"]
     assert ["a/wheels.limits.turns", "[-1.0,", "1.0]", "default"] in [line.split() for line in lines]
+    assert ["a/wheels.brake", "true", "default"] in [line.split() for line in lines]
     assert lines[-1].split() == ["a/pilot.log_level", "info", "default"]
 
 
