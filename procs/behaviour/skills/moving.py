@@ -8,6 +8,7 @@ from procs.behaviour.game import Whose
 from procs.behaviour.skills.skill import Drive, Scene, Status, Step
 from procs.behaviour.skills.states import Exit, State, StateMachine, otherwise
 from procs.model.field import Point
+from procs.model.game_states import State as GameState
 from procs.model.geometry import ahead, bearing_rad, wrap_rad
 
 _NEAR_M, _NEAR_RAD = 0.1, 0.1  # from place and heading a robot is there
@@ -75,8 +76,9 @@ class Mark(_Place):
 class Block(StateMachine):
     """Stands between the ball and the own goal, facing the ball.
 
-    At a set piece of the other team it keeps the distance of the rules; in play it stands close before the ball, and so
-    before the rival that dribbles it. What is blocked is the ball if it is near the place, and otherwise the place.
+    At a set piece of the other team, as which a dropped ball counts, it keeps the distance of the rules; in play it
+    stands close before the ball, and so before the rival that dribbles it. What is blocked is the ball if it is near
+    the place, and otherwise the place.
     """
 
     lasting = True
@@ -91,7 +93,8 @@ class Block(StateMachine):
 
     def _their_set_piece(self, scene: Scene) -> bool:
         game = scene.game
-        return game.whose is Whose.THEIRS and not game.free_play and not game.paused
+        theirs = game.whose is Whose.THEIRS or game.state is GameState.DROP_BALL
+        return theirs and not game.free_play and not game.paused
 
     def _there(self, scene: Scene) -> bool:
         own, target = scene.view.own, self._target

@@ -83,6 +83,13 @@ def test_block_keeps_the_distance_before_their_free_kick() -> None:
     assert skill.step(scene(there, 2.0, 1.0, game=FREE_KICK)).status is Status.FINAL
 
 
+@pytest.mark.parametrize(("stopped", "distance_m"), [(True, 1.3), (False, 1.0)])
+def test_block_keeps_the_distance_until_a_ball_is_dropped(stopped: bool, distance_m: float) -> None:
+    dropped = FREE_KICK._replace(state=State.DROP_BALL, whose=Whose.NEITHER, stopped=stopped)
+    target = drive(Block().step(scene(view(OWN, ball(2.0, 1.0)), 2.0, 1.0, game=dropped)))
+    assert math.dist(target.place, dropped.spot) == pytest.approx(distance_m)
+
+
 def test_block_leaves_the_circle_before_it_takes_its_place() -> None:
     near = view(robot("cyan2", 3.0, 1.0), ball(2.0, 1.0))
     target = drive(Block().step(scene(near, 2.0, 1.0, game=FREE_KICK)))
