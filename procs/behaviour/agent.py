@@ -118,6 +118,7 @@ class Agent(Component):
         kicker, field = self.kicker_state, self.config.field
         held = tells_held(kicker.value, self.clock.since_s(kicker.header.time_us))
         if self._robot in game.sent_off and view.localized:
+            self._tactics = Tactics(field, self.rng)  # a robot that comes back begins anew
             return ABSENT, leave_field(view, game, field)
         if self.config.strategy == "greedy":
             return greedy.decide(view, game, held, field)

@@ -23,7 +23,7 @@ from procs.behaviour.skiller import Skiller
 from procs.behaviour.skills.book import SKILLS
 from procs.model.field import Field, Point
 from procs.referee.referee import Referee
-from tests.procs.behaviour.behaviour_parts import newest
+from tests.procs.behaviour.behaviour_parts import newest, put
 
 PERIOD_S = 0.05
 MOUTH_M = 0.33
@@ -73,6 +73,19 @@ def test_agent_plays_on_a_field_that_was_changed() -> None:
         bench.iterate()
         aims_m.append(newest(bench, "skill").x_m)
     assert aims_m == [11.0, 9.0]
+
+
+def test_robot_that_is_sent_off_takes_its_announcement_back() -> None:
+    bench, mate = Bench(Agent, "cyan2/agent"), mate_estimate_t(name="cyan3", role="supporter", x_m=4.0, y_m=2.0)
+    announced = []
+    for sent_off in ([], ["cyan2"]):
+        for _ in range(6):
+            put(bench, "kicker_state", ball_held=True)
+            bench.port("world_model").put(localized=True, ball=seen_ball(MOUTH_M, 0.0), mates=[mate])
+            bench.port("game_state").put(state=game_state_t.PLAY, sent_off=sent_off)
+            bench.iterate()
+        announced.append(newest(bench, "role").agreement.receiver)
+    assert announced == ["cyan3", ""]
 
 
 def role_of_the_farther_robot(use_roles: bool, state: int) -> str:
