@@ -1,7 +1,7 @@
 """Places of the robots without the ball, relative to the ball; attack frame."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from procs.behaviour.bodies import USUAL, Bodies
 from procs.behaviour.game import Game, Whose
@@ -31,6 +31,7 @@ _BACK_M, _STOPPER_M = 0.75, 0.95  # before the own penalty area: the furthest pl
 _SHOOTER_M, _SHOOTER_Y_M = 1.75, 2.5  # a mate so far before the opponents' penalty area, and so far aside, can shoot
 _BESIDE_FIELD_M = 0.3  # a robot at the side of the field may stand so far outside
 _PASSED_M = 0.2  # between the bodies of a robot and one that it passes
+_STANDS_M_S = 0.3  # a slower robot stays where it is
 _STEP_M = 1.5  # far enough ahead that the robot does not brake
 _SHOT_M, _BESIDE_SHOT_M = 8.0, 1.2
 """Distance from which a mate with the ball shoots, and distance of the others from the way to the goal's middle."""
@@ -220,20 +221,22 @@ def circle(game: Game) -> Disc | None:
 
 
 def next_step(
-    own: Point, place: Point, game: Game, field: Field, others: Iterable[Robot] = (), bodies: Bodies = USUAL
+    own: Point, place: Point, game: Game, field: Field, others: Sequence[Robot] = (), bodies: Bodies = USUAL
 ) -> Point:
     """Returns the place, or a place on a way there that keeps the distance to the ball of a set piece.
 
     A robot that is too near to the ball goes to the nearest place at the distance that the arena, the areas and the
-    other robots leave free. At a kick-off a robot in the wrong half takes the shortest way around all robots.
+    other robots leave free. The way of another robot leads around the robots that stand, because they may close the
+    shorter side of the ball; at a kick-off that of a robot in the wrong half leads around all robots.
     """
     if game.free_play:
         return place
-    distance_m, taken = _keep_off_m(game), [other.place for other in others]
+    distance_m = _keep_off_m(game)
     if math.dist(own, game.spot) < distance_m - _TOO_NEAR_M:
-        return _way_out(own, game, field, distance_m, taken, bodies)
+        return _way_out(own, game, field, distance_m, [other.place for other in others], bodies)
     goes_home = game.state is State.KICK_OFF and own.x_m > 0.0
-    robots = [Disc(other, 2 * bodies.robot_radius_m + _PASSED_M) for other in taken if goes_home]
+    passed = [other.place for other in others if goes_home or math.hypot(*other.velocity_m_s) < _STANDS_M_S]
+    robots = [Disc(other, 2 * bodies.robot_radius_m + _PASSED_M) for other in passed]
     return _way_around(own, place, Disc(game.spot, distance_m - _PASSES_M), field, robots)
 
 
