@@ -44,8 +44,8 @@ class WorldModelConfig(Config):
     """An obstacle this near to a mate is that mate; one further away is, too, if its place is uncertain enough."""
     obstacle_deviation_m: float = Setting(default=0.4, gt=0.0, le=100.0)
     """Obstacles seen with a larger standard deviation are not used."""
-    border_m: float = Setting(default=0.7, ge=0.0, le=100.0)
-    """Obstacles further outside the field than this are not robots of the match."""
+    border_m: float | None = Setting(default=None, ge=0.0, le=100.0)
+    """Obstacles further outside the field than this are not robots of the match; null: those outside the walls."""
     use_team_sight: bool = True
     """Use the sightings of mates."""
     use_capture_times: bool = True
@@ -89,9 +89,10 @@ class WorldModelConfig(Config):
     @property
     def opponent_settings(self) -> OpponentSettings:
         """Limits for an obstacle to count as an opponent."""
+        border_m = self.field.border_m if self.border_m is None else self.border_m
         return OpponentSettings(
-            half_length_m=self.field.half_length_m + self.border_m,
-            half_width_m=self.field.half_width_m + self.border_m,
+            half_length_m=self.field.half_length_m + border_m,
+            half_width_m=self.field.half_width_m + border_m,
             deviation_m=self.obstacle_deviation_m,
             mate_radius_m=self.mate_radius_m,
         )

@@ -67,6 +67,22 @@ def test_slim_robots_side_by_side_are_two(radius_m: float, count: int) -> None:
     assert len(bench.port("world_model").sent[-1].opponents) == count
 
 
+@pytest.mark.parametrize("border_m", [1.0, 2.0])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_robot_at_the_wall_is_an_opponent_and_none_behind(side: float, border_m: float) -> None:
+    bench = Bench(WorldModel, "cyan1/world_model", field={"border_m": border_m})
+    wall_m, rng, known = 7.0 + border_m, np.random.default_rng(1), []
+    for _ in range(40):
+        bench.port("pose").put(x_m=2.0, y_m=side * 5.0, localized=True, covariance=(np.eye(3) * 1e-4).tolist())
+        places_m = [(x_m, side * (y_m - 5.0)) for x_m, y_m in ((1.0, wall_m - 0.25), (-1.0, wall_m + 0.25))]
+        seen_m = places_m + 0.04 * rng.standard_normal((2, 2))
+        shown = [obstacle_t(x_m=x_m, y_m=y_m, covariance_m2=(np.eye(2) * 16e-4).tolist()) for x_m, y_m in seen_m]
+        bench.port("obstacle_percepts").put(obstacles=shown)
+        bench.iterate()
+        known.append([round(each.x_m) for each in bench.port("world_model").sent[-1].opponents])
+    assert known[2:] == [[3]] * 38
+
+
 def test_track_follows_a_robot_that_brakes_and_turns_round() -> None:
     """A robot drives at 2.5 m/s, brakes at 3 m/s2 and drives back; it is seen ten times a second."""
     rng, tracks = np.random.default_rng(2), RobotTracks()
