@@ -133,7 +133,7 @@ class Team:
         newest, stamps_s, passed_s = heard.newest, heard.stamps_s, mate.told_s - heard.newest.told_s
         mate.overtaken = passed_s < 0.0
         forgotten = mate.overtaken and len(stamps_s) == _STAMPS and mate.told_s < min(stamps_s)
-        if forgotten or mate.told_s in stamps_s:
+        if forgotten or not passed_s or mate.told_s in stamps_s:  # many overtaken ones push the newest stamp out
             return None
         stamps_s.append(mate.told_s)
         if abs(passed_s) <= _TURNING_S and newest.localized and mate.localized:

@@ -136,6 +136,16 @@ def test_message_that_arrives_twice_counts_once() -> None:
         assert not robot.tick([said[1]]).opponents
 
 
+def test_newest_message_is_known_after_many_overtaken_ones() -> None:
+    robot = Listener()
+    said = []
+    for _ in range(33):
+        said.append(message(robot.now_us))
+        robot.tick()
+    world = robot.tick([said[-1], *said])
+    assert [mate.name for mate in world.mates] == ["cyan2"]
+
+
 def test_state_of_a_mate_is_that_of_its_newest_message() -> None:
     robot, said = Listener(), []
     for x_m in (-5.0, -4.0):
