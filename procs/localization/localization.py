@@ -18,6 +18,7 @@ from procs.localization.recent_motion import RecentMotion
 from procs.localization.self_localizer import LocalizerSettings, SelfLocalizer
 from procs.model.algebra import product
 from procs.model.expected_errors import EXPECTED
+from procs.model.exposures import AHEAD_S
 from procs.model.field import Field, MatchField
 from procs.model.frames import Floats, rotation
 from procs.model.geometry import plausible, wrap_rad
@@ -27,7 +28,6 @@ from procs.model.units import heading_mistake
 from procs.vision.calibration import MirrorConfig
 
 _SHORT_S = 0.05  # up to this age of an exposure, the velocity of the last tick describes the motion well enough
-_AHEAD_S = 0.02  # clocks of cameras may be ahead by this much
 _COMPASS_S = 0.5  # a heading of the compass counts for so long, turned on by gyro or wheels
 _USUAL = MirrorConfig().mirror()  # the mirror for which the expected errors are stated
 _AWAY_M = 2.0  # distance at which mirrors are compared
@@ -209,7 +209,7 @@ class Localization(Component):
         capture_us = self.line_points.value.capture_us
         if not capture_us:
             return True
-        if capture_us <= self._captured_us or self.clock.since_s(capture_us) < -_AHEAD_S:
+        if capture_us <= self._captured_us or self.clock.since_s(capture_us) < -AHEAD_S:
             return False
         self._captured_us = capture_us
         return True

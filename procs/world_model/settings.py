@@ -5,6 +5,7 @@ from pydantic import Field as Setting
 from fwk import Config
 from procs.model.ball import BALL, BallModel
 from procs.model.expected_errors import EXPECTED
+from procs.model.exposures import AHEAD_S
 from procs.model.field import Field, MatchField
 from procs.model.realism import Realism
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
@@ -69,8 +70,12 @@ class WorldModelConfig(Config):
     """Number of messages of a mate that share one error; multiplies the covariance of its sightings."""
 
     def age_s(self, capture_us: int, now_us: int) -> float:
-        """Returns the time since an exposure; `capture_us` of 0 stands for an exposure in this tick."""
-        return (now_us - capture_us) / US_PER_S if capture_us and self.use_capture_times else 0.0
+        """Returns the time since an exposure; `capture_us` of 0 stands for an exposure in this tick.
+
+        So does one that is as little ahead as the clock of a camera may be.
+        """
+        age_s = (now_us - capture_us) / US_PER_S if capture_us and self.use_capture_times else 0.0
+        return 0.0 if -AHEAD_S <= age_s < 0.0 else age_s
 
     @property
     def shaking(self) -> Shaking:

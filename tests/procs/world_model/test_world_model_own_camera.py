@@ -213,6 +213,18 @@ def test_impossible_height_is_not_told_to_the_team() -> None:
     assert all(math.isfinite(sent.ball_z_m) for sent in robot.bench.port("team_message").sent)
 
 
+@pytest.mark.parametrize(("age_s", "known"), [(-0.015, True), (-0.03, False)])
+def test_clock_of_the_camera_may_be_a_little_ahead(age_s: float, known: bool) -> None:
+    robot = Watching()
+    for _ in range(10):
+        robot.see_ball(2.0, 0.0, age_s=age_s)
+        robot.see_robots((0.0, 3.0), age_s=age_s)
+        robot.tick()
+    assert robot.world.ball.known == known
+    assert len(robot.world.opponents) == known
+    assert any(sent.ball_visible for sent in robot.bench.port("team_message").sent) == known
+
+
 def test_frame_that_comes_twice_counts_once() -> None:
     """A driver publishes its newest frame again: what only that frame shows is neither the ball nor an opponent."""
     robot = Watching()
