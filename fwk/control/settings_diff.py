@@ -6,15 +6,20 @@ from typing import Any
 from fwk.control.yaml_edit import flow
 from fwk.model.plan import Plan
 from fwk.plan.files.overrides import PLACE
+from fwk.plan.files.schema import EVERY, OFFSET
 
 
-def differences(rows: Sequence[dict[str, Any]], plan: Plan) -> tuple[list[str], list[str]]:
+def differences(
+    rows: Sequence[dict[str, Any]], plan: Plan, components: Sequence[dict[str, Any]] = ()
+) -> tuple[list[str], list[str]]:
     """Returns `NAME.SETTING=VALUE` for each setting of a run that differs in the freshly loaded plan.
 
     First those that can be changed during the run, then the others: fixed settings, and mappings that lack a key in the
-    files, because a key stays until the run ends. Values given with `--set` at the start of the run stay.
+    files, because a key stays until the run ends; and `every` and `offset` of `components`, as the run tells them.
+    Values given with `--set` at the start of the run stay.
     """
-    values = {component.name: component.config for component in plan.components}
+    planned = {component.name: component for component in plan.components}
+    values = {name: component.config for name, component in planned.items()}
     now: list[str] = []
     later: list[str] = []
     for row in rows:
@@ -24,6 +29,9 @@ def differences(rows: Sequence[dict[str, Any]], plan: Plan) -> tuple[list[str], 
         found, value = _found(values[name], setting)
         if value != row["value"] and found:
             (now if row["editable"] and found == setting else later).append(f"{name}.{found}={flow(value)}")
+    for was in components:
+        turns = {key: getattr(planned[was["name"]], key) for key in (EVERY, OFFSET) if was["name"] in planned}
+        later += [f"{was['name']}.{key}={value}" for key, value in turns.items() if value != was[key]]
     return now, list(dict.fromkeys(later))
 
 

@@ -11,6 +11,7 @@ from fwk.cli.run_options import Json, RunChoice, asking
 from fwk.control import runs
 from fwk.control.client import Client, ControlError
 from fwk.display.table import Column, Table
+from fwk.model.selection import matches
 from fwk.program import FAILED
 
 config = typer.Typer(add_completion=False, no_args_is_help=True)
@@ -146,7 +147,8 @@ def reload(names: SomeSettings = None, chosen: RunChoice = None, as_json: Json =
     """Reads the launch files again and applies changed settings.
 
     Settings given with --set at the start stay; live changes that were not kept are undone. Settings that cannot be
-    changed during a run are named, and so are mappings that got a key: it stays until the run ends.
+    changed during a run are named, as are 'every' and 'offset', and mappings that got a key: it stays until the run
+    ends.
     """
     with asking(), runs.supervisor(chosen) as run:
         _take_over(run, names or [], "fwk config reload", as_json)
@@ -155,7 +157,9 @@ def reload(names: SomeSettings = None, chosen: RunChoice = None, as_json: Json =
 def _take_over(run: Client, names: list[str], origin: str, as_json: bool) -> None:
     from fwk.cli.steer.setting_files import changed_in
 
-    changes, later = changed_in(run.ask("run")["file"], run.ask("settings", names=names)["settings"])
+    rows, told = run.ask("settings", names=names)["settings"], run.ask("status")
+    whole = [each for each in told["components"] if any(matches(each["name"], name) for name in names or ["*"])]
+    changes, later = changed_in(told["file"], rows, whole)
     answer = run.ask("set", changes=changes, origin=origin) if changes else {"settings": []}
     if as_json:
         typer.echo(json.dumps({**answer, "later": later}))

@@ -70,10 +70,15 @@ def forget_beside(launch_file: str, paths: list[str]) -> None:
         raise typer.Exit(FAILED) from error
 
 
-def changed_in(launch_file: str, rows: list[dict[str, Any]]) -> tuple[list[str], list[str]]:
-    """Returns the settings of a run that its files now state differently: those to set, and those for the next run."""
+def changed_in(
+    launch_file: str, rows: list[dict[str, Any]], components: list[dict[str, Any]]
+) -> tuple[list[str], list[str]]:
+    """Returns the settings of a run that its files now state differently: those to set, and those for the next run.
+
+    So are `every` and `offset` of `components` of the run.
+    """
     try:
-        return differences(rows, load_plan(launch_file))
+        return differences(rows, load_plan(launch_file), components)
     except PlanError as error:
         typer.echo(error, err=True)
         raise typer.Exit(BAD_INPUT) from error

@@ -60,3 +60,10 @@ def test_key_that_the_files_lack_stays_until_the_run_ends(run: RunSettings) -> N
 def test_fixed_setting_is_for_the_next_run(run: RunSettings) -> None:
     edited = plan_of({"a/robot": Robot}, {"a/robot": {"fixed": 2, "stuck": {"x": [3]}}})
     assert differences(run.rows([]), edited) == (["a/robot.stuck={x: [3]}"], ["a/robot.fixed=2"])
+
+
+def test_every_and_offset_are_for_the_next_run(run: RunSettings) -> None:
+    told = [{"name": "a/robot", "every": 1, "offset": 0}, {"name": "gone/robot", "every": 3, "offset": 0}]
+    edited = plan_of({"a/robot": Robot}, turns={"a/robot": (2, 1)})
+    assert differences(run.rows([]), edited, told) == ([], ["a/robot.every=2", "a/robot.offset=1"])
+    assert differences(run.rows([]), FILES, told) == ([], [])
