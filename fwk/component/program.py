@@ -77,7 +77,7 @@ class Program(Component):
         self._is_started_again = self.config.coding == "files"
         kind = FileProcess if self._is_started_again else ChildProcess
         self._child: FileProcess | ChildProcess = kind(self.config.command)
-        about = {"name": self.name, "period_s": self.clock.period_s, "settings": self.config.settings}
+        about = {"name": self.name, "period_s": self.clock.iteration_s, "settings": self.config.settings}
         self._news: dict[str, Any] = {**about, "reads": [*self._readers], "writes": [*self._writers]}
         if not self._is_started_again:
             self._exchange(INIT)
@@ -100,7 +100,7 @@ class Program(Component):
         news = self._news
         if not self._is_started_again:  # a program that is started again knows nothing of the requests before
             self._news = {}
-        period_us = round(self.clock.period_s * US_PER_S)
+        period_us = round(self.clock.iteration_s * US_PER_S)
         readers = {} if stage == FINAL else self._readers  # the last iteration has had them
         for service in self._services.values() if stage not in (INIT, FINAL) else ():
             service.begin()

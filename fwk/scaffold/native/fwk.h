@@ -65,7 +65,8 @@ const char *fwk_settings(const fwk_t *fwk);
 /* Sends what was written and waits for the next iteration. 0: there is none, the program should end. */
 int fwk_next(fwk_t *fwk);
 
-/* Tick, logical time and period of this iteration. In the last one, `fwk_is_final`, actuators are to be stopped. */
+/* Tick and logical time of this iteration, and the time from one to the next. In the last one, `fwk_is_final`,
+ * actuators are to be stopped. */
 int64_t fwk_tick(const fwk_t *fwk);
 int64_t fwk_time_us(const fwk_t *fwk);
 int64_t fwk_period_us(const fwk_t *fwk);

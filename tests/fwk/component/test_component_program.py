@@ -77,6 +77,15 @@ def test_first_line_tells_name_ports_and_settings(tmp_path: Path) -> None:
     assert (last["stage"], "settings" in last) == ("final", False)
 
 
+def test_period_is_the_time_between_two_iterations(tmp_path: Path) -> None:
+    heard = tmp_path / "heard"
+    bench = bench_of("sh", "-c", f"while read line; do echo \"$line\" >> {heard}; echo '{{}}'; done", every=4)
+    bench.iterate(4)
+    bench.finalize()
+    first, tick, _ = map(json.loads, heard.read_text().splitlines())
+    assert (first["period_s"], tick["tick"]) == (0.2, 4)
+
+
 @pytest.mark.parametrize(
     ("answer", "reason"),
     [
