@@ -30,8 +30,8 @@ def plan_of(
     """Returns the plan of some components; those of a group share a process, each other one has its own.
 
     `turns` are `every` and `offset` by component, where they differ from the class. `launched` is the plan of a launch
-    file that has these components and others: its stages, rates, turns and providers are theirs, and channels that only
-    the others write are silent.
+    file that has these components and others: its stages, rates, turns and providers are theirs, channels that only the
+    others write are silent, and nothing carries out their commands.
 
     Raises:
         ValueError: the components do not fit together.
@@ -49,7 +49,12 @@ def plan_of(
         for name, kind in components.items()
     ]
     outside = {channel: type_named(kind) for channel, kind in fields.get("outside", {}).items()}
-    wiring = wire(specs, lambda name, _, text: mistakes.append(f"{name}: {text}"), outside, written.__contains__)
+
+    def may_lack(name: str) -> bool:
+        """Returns whether another component of the launch file writes a channel, or carries out a command."""
+        return launched is not None and name not in ran
+
+    wiring = wire(specs, lambda name, _, text: mistakes.append(f"{name}: {text}"), outside, may_lack)
     if mistakes:
         raise ValueError("\n".join(mistakes))
     names, granted = list(components), granted_by(specs, wiring)

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from fwk import Aspect, Clock, Component, Reads, Writes
+from fwk import Aspect, Calls, Clock, Component, Reads, Serves, Writes
 from fwk.testing import MemorySystem, launch_plan, system_of
-from lcmtypes.robot import imu_t, odometry_t
+from lcmtypes.robot import imu_t, kick_command_t, odometry_t
 
 
 class Battery(Aspect):
@@ -50,6 +50,19 @@ class Follower(Component):
     def loop(self) -> None:
         self.imu.value.heading_rad = self.odometry.value.x_m
         self.imu.write()
+
+
+class Kicker(Component):
+    stage = "act"
+    kick: Serves[kick_command_t]
+
+
+class Caller(Component):
+    stage = "think"
+    kick: Calls[kick_command_t]
+
+    def loop(self) -> None:
+        self.kick.call()
 
 
 @pytest.fixture
@@ -97,3 +110,14 @@ def test_components_that_start_on_request_stay_out(file: Path) -> None:
     made = system(file, lines % "channels: {odometry: r/odometry}")
     assert (sorted(made.runners), made.newest("s/imu").heading_rad) == (["r/gauge", "s/follower"], 0.0)
     assert "r/user" in system_of(str(file), bool).runners
+
+
+def test_commands_to_a_component_that_stays_out_wait(file: Path) -> None:
+    made = system(file, "  r/kicker: {use: :Kicker, start: false}\n  r/caller: {use: :Caller}")
+    assert (len(made.sent["r/kick@r/caller"]), made.sent["r/kick@answers"]) == (4, [])
+
+
+def test_component_without_the_provider_of_its_aspect_is_refused(file: Path) -> None:
+    system(file, "  r/user: {use: :User}\n  r/gauge: {use: :Gauge}")
+    with pytest.raises(ValueError, match="'r/gauge' does not provide Battery"):
+        system_of(str(file), lambda name: name == "r/user")
