@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from fwk.cli.recordings.runs import runs
-from fwk.cli.run.run_directory import IN_USE, RUNS, RunDirError, make_run_dir, named, prune, run_dirs
+from fwk.cli.run.run_directory import IN_USE, RUNS, RunDirError, make_run_dir, named, own_name, prune, run_dirs
 from fwk.cli.run.run_record import RUN_FILE, write_result
 from tests.fwk.cli.cli_processes import PROCS, launch, write_files
 
@@ -147,6 +147,16 @@ def test_the_commands(home: Path) -> None:
     assert there(home) == names[2:]
     assert "'nan' is not a size; give gigabytes" in said("prune", "--size-gb", "nan", code=2)
     assert f"did you mean '{names[2]}'?" in said("keep", names[2] + "1", code=2)
+
+
+def test_a_run_is_kept_by_its_own_name(home: Path) -> None:
+    """As other commands do, the newest of several runs of one name is meant."""
+    names = make(home, 1, 2, 3)
+    said("keep", own_name(names[0]))
+    assert [row["kept"] for row in json.loads(said("list", "--json"))] == [False, False, True]
+    said("release", own_name(names[0]))
+    assert not any(row["kept"] for row in json.loads(said("list", "--json")))
+    assert "no run ''" in said("keep", "", code=2)
 
 
 def test_a_result_of_several_lines_is_shown_in_one_row(home: Path) -> None:
