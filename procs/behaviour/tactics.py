@@ -180,7 +180,7 @@ class Tactics:
             return self._stand(view, self._next_step(view, place, game), "take position")
         if game.whose is not Whose.OURS:
             return Order("block", game.spot, intention="keep distance")
-        if self.passing.said.passer:  # the ball is on its way, but not yet in play
+        if self.passing.said.passer and not game.stopped:  # the ball is on its way, but not yet in play
             return self._go_for_ball(view)
         if holds_ball and not game.stopped:
             return self._play_ball(view)

@@ -189,6 +189,15 @@ def test_taker_draws_the_variant_of_each_set_piece() -> None:
     assert set(said) == places
 
 
+@pytest.mark.parametrize(("stopped", "skill"), [(True, "goto"), (False, "get_ball")])
+def test_pass_of_a_set_piece_is_fetched_after_its_start(stopped: bool, skill: str) -> None:
+    """A mate that was to take it until now still announces the pass until its next message."""
+    game = Game(State.FREE_KICK, stopped=stopped, whose=Whose.OURS, spot=Point(-3.0, 1.0))
+    mate = robot("cyan3", -3.7, 1.0, role=ATTACKER)._replace(agreement=Agreement("cyan2"))
+    seen = view(robot("cyan2", -4.5, 1.0), ball(-3.0, 1.0), (mate,))
+    assert Tactics(FIELD).decide(seen, game, job(ATTACKER), False, 0.05).skill == skill
+
+
 def test_plan_of_a_set_piece_is_kept_once_it_may_be_taken() -> None:
     game = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(0.0, 0.0), number=4)
     tactics, supporter = Tactics(FIELD), robot("cyan3", -2.0, 1.5, role=SUPPORTER)
