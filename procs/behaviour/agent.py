@@ -84,6 +84,7 @@ class Agent(Component):
         self._stalls = Stalls()
         self._steady = SteadyRole()
         self._jobs: Mapping[str, roles.Job] = NO_JOBS
+        self._begun = Game()  # as it was when the set piece at hand was last stopped
         self._call: Call | None = None
         self.config_changed()
 
@@ -100,7 +101,7 @@ class Agent(Component):
         role, frame = self.role.value, frame_of(self.game_state.value, self._team)
         if frame != self._frame:
             self._frame, self._tactics = frame, Tactics(self.config.field, self.rng)
-        game = game_of(self.game_state.value, self._team, frame)
+        game = self._as_begun(game_of(self.game_state.value, self._team, frame))
         if role.role == ABSENT and self._robot not in game.sent_off:
             role.role = roles.DEFENDER
         model, said, players = self.world_model.value, self._tactics.passing.said, self.config.players
@@ -112,6 +113,13 @@ class Agent(Component):
         role.intention = order.intention or order.skill
         self.role.write()
         self._command(order)
+
+    def _as_begun(self, game: Game) -> Game:
+        """Returns the game with the number before its start: a card after that changes no plan and no place."""
+        same = self._begun._replace(stopped=game.stopped, sent_off=game.sent_off, number=game.number) == game
+        if game.stopped or not same:
+            self._begun = game
+        return game._replace(number=self._begun.number)
 
     def _decide(self, view: View, game: Game) -> tuple[str, Order]:
         """Returns the role of the robot and its order."""

@@ -88,6 +88,18 @@ def test_robot_that_is_sent_off_takes_its_announcement_back() -> None:
     assert announced == ["cyan3", ""]
 
 
+def test_card_after_the_start_of_a_set_piece_changes_no_place() -> None:
+    bench, places = Bench(Agent, "cyan4/agent"), []
+    mates = [mate_estimate_t(name=f"cyan{number}", x_m=-2.0 * number) for number in (1, 2, 3)]
+    for stopped, decisions in ((True, 4), (False, 4), (False, 5), (True, 7)):
+        state = {"state": game_state_t.KICK_OFF, "state_team": game_state_t.TEAM_MAGENTA}
+        bench.port("world_model").put(localized=True, x_m=-9.0, ball=seen_ball(0.0, 0.0), mates=mates)
+        bench.port("game_state").put(**state, stopped=stopped, decisions=decisions)
+        bench.iterate()
+        places.append((newest(bench, "skill").x_m, newest(bench, "skill").y_m))
+    assert places[0] == places[1] == places[2] != places[3]
+
+
 def role_of_the_farther_robot(use_roles: bool, state: int) -> str:
     """Returns the role of a field player whose mate is nearer to the ball."""
     bench, mates = Bench(Agent, "cyan3/agent", use_roles=use_roles), [mate_estimate_t() for _ in range(2)]
