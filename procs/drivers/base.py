@@ -182,6 +182,7 @@ class Base(Component):
         self._driven_us = self.clock.now_us
         velocity = self._ramp.advance(self._wanted(), min(passed_s, max(_LONGEST_GAP_S, usual_s)))
         possible = within_wheel_limit(velocity, robot.wheel_limit_m_s, robot.wheel_distance_m)
+        self._ramp.velocity = possible  # from a faster one it would begin to brake late
         self.wheel_command.value.wheel_m_s = list(wheels_of(possible, robot.wheel_distance_m))
         self.wheel_command.write()
 

@@ -77,6 +77,13 @@ def test_wheel_commands_stay_within_the_limit() -> None:
     assert max(map(abs, base.port("wheel_command").sent[-1].wheel_m_s)) == pytest.approx(2.0)
 
 
+def test_base_with_slow_wheels_brakes_at_once() -> None:
+    base = bench(robot={"wheel_limit_m_s": 1.5}, braking_m_s2=4.0)
+    before = drive(base, 40, vx_m_s=3.0, enabled=True).vx_m_s
+    assert before < 1.8
+    assert drive(base, 1, enabled=True).vx_m_s == pytest.approx(before - 0.2)
+
+
 def test_disabled_motors_brake() -> None:
     base = bench()
     drive(base, 40, vx_m_s=1.0, enabled=True)
