@@ -46,7 +46,7 @@ class Stalls:
     ) -> frozenset[str]:
         """Returns the names of the stalled robots; call it once a tick, `duration_s` after the last.
 
-        A robot stays stalled until it moves, for 10 s at most. `jobs` are those of the last tick.
+        A robot stays stalled until it moves, or has had no reason to drive for 10 s. `jobs` are those of the last tick.
         """
         obliged, team = _ball_waits(view, game, field), {robot.name: robot for robot in (*view.mates, view.own)}
         self._stands = {name: self._standing(robot) for name, robot in team.items()}
