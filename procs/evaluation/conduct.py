@@ -61,7 +61,10 @@ def _restarts(piece: Piece) -> tuple[list[bool], list[bool]]:
 
 
 def _untaken(piece: Piece, released: int) -> Iterator[int]:
-    """Yields the ticks of a set piece from its release on while its ball lies where it was laid."""
+    """Yields the ticks of a set piece from its release on while its ball lies where it was laid.
+
+    A dropped ball is free from its release on, so that there is one tick of it.
+    """
     state = piece.game[released].state
     for tick in itertools.count(released):
         if tick not in piece.truth or tick not in piece.game:
@@ -71,6 +74,8 @@ def _untaken(piece: Piece, released: int) -> Iterator[int]:
         if game.stopped or game.state != state or moved_m > _LIES_M:
             return
         yield tick
+        if state == State.DROP_BALL:
+            return
 
 
 def _standing(piece: Piece, tick: int, laid: ground_truth_t) -> tuple[Restart, dict[str, Point], Ends]:

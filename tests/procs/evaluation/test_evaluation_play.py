@@ -37,6 +37,17 @@ def test_distances_count_until_the_ball_moves(ball_m: float, violated: bool) -> 
     assert conducted(made)["distance violated at restarts"].tolist() == [violated]
 
 
+@pytest.mark.parametrize(("at_release_m", "violated"), [(1.2, False), (0.8, True)])
+def test_robots_may_go_to_a_ball_once_it_is_dropped(at_release_m: float, violated: bool) -> None:
+    made = piece([robot("cyan1", at_release_m, 0.0)], ticks=20, vx_m_s=0.0)
+    for tick in made.truth:
+        game = made.game[tick] = game_state_t()
+        game.state, game.stopped = game_state_t.DROP_BALL, tick == FIRST
+        if tick >= FIRST + 10:
+            made.truth[tick].robots = [robot("cyan1", 0.6, 0.0)]
+    assert conducted(made)["distance violated at restarts"].tolist() == [violated]
+
+
 @pytest.mark.parametrize(("sent_off", "violated"), [([], True), (["magenta2"], False)])
 def test_robots_that_were_sent_off_violate_nothing(sent_off: list[str], violated: bool) -> None:
     made = piece([robot("cyan1", -0.5, 0.0), robot("magenta2", -4.0, 7.5)], ticks=2, vx_m_s=0.0)
