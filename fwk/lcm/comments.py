@@ -6,7 +6,7 @@ from fwk.lcm.lcm_file import LcmSyntaxError, Struct, read_lcm_file
 from fwk.lcm.type_registry import source_folders
 
 NEEDED = "has to be given"
-"""In the comment of a member: nobody means its zero by leaving it out."""
+"""In the comment of a member: a command that leaves the member out is refused."""
 
 
 @cache

@@ -44,7 +44,7 @@ BELIEFS: dict[str, Any] = {
 }
 """Interfaces of each robot that a piece keeps."""
 SILENT_S = 0.5
-"""What a component said so long before is not what it says now; one with `every` says nothing in the ticks between."""
+"""A message of a component holds for so long; a component with `every` sends none in the ticks between."""
 
 
 @dataclass

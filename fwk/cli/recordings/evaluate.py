@@ -221,9 +221,9 @@ def _modules(plan: Plan) -> dict[str, str]:
 
 def _programs(plan: Plan) -> dict[str, str]:
     """Returns the hashes of the files that the commands of the plan's components name, such as `./adder.py`."""
-    words = {word for each in plan.components if each.module == MODULE for word in each.config["command"]}
-    files = {word: find_words([word], plan.folders)[0] for word in sorted(words) if "/" in word}
-    return {word: hash_of(file) for word, file in files.items()}
+    commands = [each.config["command"] for each in plan.components if each.module == MODULE]
+    words = sorted({word for command in commands for word in command if "/" in word})
+    return {word: hash_of(file) for word, file in zip(words, find_words(words, plan.folders), strict=True)}
 
 
 def _inputs(plan: Plan) -> dict[str, str]:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from fwk.cli.output import say_table
-from fwk.cli.run.run_directory import GB, KEEP, RUNS, RunDir, own_name, prune, run_dirs
+from fwk.cli.run.run_directory import GB, KEEP, RUNS, RunDir, called, prune, run_dirs
 from fwk.cli.run.run_record import RunRecord, age_s, read_record
 from fwk.cli.run_options import Json
 from fwk.clock import US_PER_S
@@ -103,11 +103,11 @@ def release_run(run: RunName) -> None:
 
 def _named(name: str) -> Path:
     there = {each.path.name: each.path for each in run_dirs(Path.home() / RUNS)}
-    own = {own_name(folder): folder for folder in there}  # the newest of each name
-    if name not in there and name not in own:
+    found = called(name, there.values())
+    if not found:
         typer.echo(f"error: no run '{name}' in {Path.home() / RUNS}; {hint(name, there)}", err=True)
         raise typer.Exit(BAD_INPUT)
-    return there[name if name in there else own[name]]
+    return found
 
 
 def _word(run: RunDir) -> str:

@@ -5,7 +5,7 @@ import fcntl
 import os
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -105,9 +105,18 @@ def named(path: Path) -> Path:
     """
     if str(path) != path.name or os.path.lexists(path):
         return path
-    runs = Path.home() / RUNS
-    own = [folder for folder in runs.glob("*") if own_name(folder.name) == path.name]
-    return runs / path.name if os.path.isdir(runs / path.name) else max(own, default=path)
+    return called(path.name, (Path.home() / RUNS).glob("*")) or path
+
+
+def called(name: str, folders: Iterable[Path]) -> Path | None:
+    """Returns the run directory of a name, or the newest one of a run's own name; None if there is neither."""
+    own = []
+    for folder in folders:
+        if folder.name == name and folder.is_dir():
+            return folder
+        if own_name(folder.name) == name:
+            own.append(folder)
+    return max(own, default=None)
 
 
 def own_name(folder: str) -> str:
